@@ -1,0 +1,6 @@
+//! Authoring: rigged character + garment + motion -> quasi-static simulation -> training -> evaluation -> model file.
+
+mod error;
+pub mod rig;
+
+pub use error::{Error, Result};

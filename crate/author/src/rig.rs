@@ -1,0 +1,121 @@
+//! What authoring passes from stage to stage: a rigged character in its canonical pose, its motion, a garment.
+//! Units: metres, right-handed, +Y up (glTF). All of it f64; the network's f32 begins at the dataset.
+
+use glam::{DAffine3, DVec2, DVec3};
+
+/// Joint world transforms `G_j` of one pose, one per joint of the [`Character`], in metres.
+pub type Pose = Vec<DAffine3>;
+
+/// One joint of the skeleton.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Joint {
+    /// Name in the file, unique within the character.
+    pub name: String,
+    /// Index of the parent joint; parents stand before their children. `None` for a top joint.
+    pub parent: Option<usize>,
+    /// `B_j⁻¹`: canonical (bind) space in metres to joint space, so that `A_j = G_j · B_j⁻¹`.
+    pub inverse_bind: DAffine3,
+}
+
+/// Triangle mesh with one vertex per position (welded), counter-clockwise seen from outside.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Mesh {
+    /// Vertex positions, metres.
+    pub positions: Vec<DVec3>,
+    /// Vertex indices, three per triangle.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+/// What is drawn of a welded [`Mesh`]: vertices split at seams.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Surface {
+    /// Drawn vertex -> vertex of the welded mesh.
+    pub vertex: Vec<u32>,
+    /// Texture coordinates per drawn vertex; empty when the file has none.
+    pub uv: Vec<DVec2>,
+    /// Drawn-vertex indices, three per triangle.
+    pub triangles: Vec<[u32; 3]>,
+    /// Linear RGB base colour per drawn triangle; empty when the file has none.
+    pub colour: Vec<[f32; 3]>,
+}
+
+/// Skin weights of one vertex: (joint, weight), weights positive with sum one, strongest first.
+pub type SkinWeights = Vec<(usize, f64)>;
+
+/// Motion sampled at a fixed rate.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Clip {
+    /// Name in the file.
+    pub name: String,
+    /// Poses per second.
+    pub rate: f64,
+    /// One pose per frame.
+    pub poses: Vec<Pose>,
+}
+
+/// A rigged character: skeleton, skinned body and motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Character {
+    /// Joints, parents first.
+    pub joints: Vec<Joint>,
+    /// The hip: the joint whose position and heading define the body frame.
+    pub root: usize,
+    /// The body in the canonical pose.
+    pub body: Mesh,
+    /// Skin weights per body vertex.
+    pub weights: Vec<SkinWeights>,
+    /// What is drawn of the body.
+    pub surface: Surface,
+    /// Motion.
+    pub clips: Vec<Clip>,
+    /// Metres per unit of the file it came from (0.01 for a file in centimetres).
+    pub metres_per_unit: f64,
+}
+
+/// A garment: the cloth mesh in the canonical pose's space, and what is drawn of it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Garment {
+    /// Welded cloth mesh, metres.
+    pub mesh: Mesh,
+    /// What is drawn of it (seams split, UVs).
+    pub surface: Surface,
+}
+
+impl Character {
+    /// The pose whose skinning leaves the body where it is: `G_j = B_j`.
+    pub fn canonical_pose(&self) -> Pose {
+        self.joints.iter().map(|joint| joint.inverse_bind.inverse()).collect()
+    }
+
+    /// `A_j = G_j · B_j⁻¹` per joint.
+    pub fn skinning(&self, pose: &Pose) -> Vec<DAffine3> {
+        pose.iter().zip(&self.joints).map(|(joint, bind)| *joint * bind.inverse_bind).collect()
+    }
+
+    /// Linear blend skinning of the body: canonical positions [b] -> posed positions [b].
+    pub fn pose_body(&self, pose: &Pose) -> Vec<DVec3> {
+        let skinning = self.skinning(pose);
+        let blend = |(rest, weights): (&DVec3, &SkinWeights)| {
+            weights.iter().map(|&(joint, weight)| skinning[joint].transform_point3(*rest) * weight).sum()
+        };
+        self.body.positions.iter().zip(&self.weights).map(blend).collect()
+    }
+
+    /// Index of the joint of that name.
+    pub fn joint(&self, name: &str) -> Option<usize> {
+        self.joints.iter().position(|joint| joint.name == name)
+    }
+}
+
+impl Mesh {
+    /// Area-weighted vertex normals, unit length; +Y where a vertex has no area around it.
+    pub fn normals(&self, positions: &[DVec3]) -> Vec<DVec3> {
+        let mut normals = vec![DVec3::ZERO; positions.len()];
+        for triangle in &self.triangles {
+            let [a, b, c] = triangle.map(|i| positions[i as usize]);
+            let normal = (b - a).cross(c - a);
+            triangle.iter().for_each(|&i| normals[i as usize] += normal);
+        }
+        normals.iter().map(|normal| normal.try_normalize().unwrap_or(DVec3::Y)).collect()
+    }
+}

@@ -1,0 +1,5 @@
+//! The CTSN network.
+
+/// Errors.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {}
