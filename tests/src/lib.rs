@@ -1,1 +1,3 @@
-//! Placeholder.
+//! What the tests across packages share: golden files and the checks against them, the same natively and in the browser.
+
+pub mod golden;

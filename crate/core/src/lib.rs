@@ -1,5 +1,17 @@
-//! The CTSN network.
+//! ctsn-core: the two-stream network of the paper CTSN, from model file and pose to cloth. No I/O, no platform code.
+//!
+//! `Model` (weights) + `BodyFrame` (pose) -> `network::forward` over a `Device` -> positions. `Predictor` ties them for the CPU.
 
-/// Errors.
-#[derive(Debug, thiserror::Error)]
-pub enum Error {}
+pub mod cpu;
+pub mod device;
+mod error;
+pub mod file;
+pub mod model;
+pub mod network;
+pub mod pose;
+mod predictor;
+pub mod topology;
+
+pub use error::{Error, Result};
+pub use network::Streams;
+pub use predictor::Predictor;

@@ -1,0 +1,67 @@
+//! `β = sigmoid(w_g · [ĥ ; r ; ĥ - r])`, `h = ReLU(LayerNorm((1-β) ĥ + β r))`, eps 1e-5. network.md §3.
+
+use super::vector::dot;
+use fearless_simd::{Level, Simd, SimdBase, SimdFloat, dispatch};
+
+/// LayerNorm's eps; part of the contract.
+pub const EPSILON: f32 = 1e-5;
+
+/// attended ĥ [n, F], projected [n, 4F] with r last, gate [3F], norm weight and bias [F] -> output h [n, F].
+pub fn gate(
+    level: Level,
+    attended: &[f32],
+    projected: &[f32],
+    gate: &[f32],
+    norm_weight: &[f32],
+    norm_bias: &[f32],
+    output: &mut [f32],
+) {
+    dispatch!(level, simd => kernel(simd, attended, projected, gate, norm_weight, norm_bias, output));
+}
+
+#[inline(always)]
+fn kernel<S: Simd>(
+    simd: S,
+    attended: &[f32],
+    projected: &[f32],
+    gate: &[f32],
+    norm_weight: &[f32],
+    norm_bias: &[f32],
+    output: &mut [f32],
+) {
+    let features = norm_weight.len();
+    let (gate_attended, rest) = gate.split_at(features);
+    let (gate_skip, gate_difference) = rest.split_at(features);
+    let rows = attended.chunks_exact(features).zip(projected.chunks_exact(4 * features));
+    for (output, (attended, projected)) in output.chunks_exact_mut(features).zip(rows) {
+        let skip = &projected[3 * features..];
+        // w3 · (ĥ - r) is split in two products; the difference is never stored.
+        let logit =
+            dot(simd, gate_attended, attended) + dot(simd, gate_skip, skip) + dot(simd, gate_difference, attended)
+                - dot(simd, gate_difference, skip);
+        let beta = 1.0 / (1.0 + (-logit).exp());
+        for ((output, attended), skip) in output.iter_mut().zip(attended).zip(skip) {
+            *output = attended + beta * (skip - attended);
+        }
+        let mean = output.iter().sum::<f32>() / features as f32;
+        output.iter_mut().for_each(|value| *value -= mean);
+        let variance = dot(simd, output, output) / features as f32;
+        normalise(simd, 1.0 / (variance + EPSILON).sqrt(), norm_weight, norm_bias, output);
+    }
+}
+
+/// output = max(0, weight · output · scale + bias).
+#[inline(always)]
+fn normalise<S: Simd>(simd: S, scale: f32, weight: &[f32], bias: &[f32], output: &mut [f32]) {
+    let lanes = S::f32s::LEN;
+    let (factor, zero) = (S::f32s::splat(simd, scale), S::f32s::splat(simd, 0.0));
+    let whole = output.len() / lanes * lanes;
+    for at in (0..whole).step_by(lanes) {
+        let load = |slice: &[f32]| S::f32s::from_slice(simd, &slice[at..at + lanes]);
+        let value = (load(output) * factor).mul_add(load(weight), load(bias));
+        value.max(zero).store_slice(&mut output[at..at + lanes]);
+    }
+    for at in whole..output.len() {
+        output[at] = (output[at] * scale * weight[at] + bias[at]).max(0.0);
+    }
+}

@@ -1,0 +1,113 @@
+//! The CPU device: one file per operation, kernels generic over the SIMD level, dispatched once per call.
+//! The same source serves AVX2, NEON, wasm simd128 and the scalar level, which is the reference.
+
+pub mod add;
+pub mod attend;
+pub mod blend;
+pub mod exp;
+pub mod features;
+pub mod gate;
+pub mod linear;
+pub mod normals;
+pub mod skin;
+mod vector;
+
+use crate::device::{Activation, Device, Space};
+use crate::model::{Layer, Linear, Reference, Sizes, Skin};
+use crate::topology::Graph;
+pub use fearless_simd::Level;
+
+/// The CPU: level of SIMD and scratch space that grows to its final size in the first frame.
+pub struct Cpu {
+    level: Level,
+    scratch: attend::Scratch,
+}
+
+impl Cpu {
+    /// The best level this machine has.
+    pub fn new() -> Self {
+        Self::with_level(Level::new())
+    }
+
+    /// A chosen level.
+    pub fn with_level(level: Level) -> Self {
+        Self { level, scratch: attend::Scratch::default() }
+    }
+}
+
+impl Default for Cpu {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Device for Cpu {
+    type Buffer = Vec<f32>;
+    type Indices = Vec<u32>;
+
+    fn buffer(&mut self, values: &[f32]) -> Vec<f32> {
+        values.to_vec()
+    }
+
+    fn indices(&mut self, indices: &[u32]) -> Vec<u32> {
+        indices.to_vec()
+    }
+
+    fn write(&mut self, buffer: &mut Vec<f32>, values: &[f32]) {
+        buffer.copy_from_slice(values);
+    }
+
+    fn linear(&mut self, x: &Vec<f32>, layer: &Linear<Vec<f32>>, activation: Activation, y: &mut Vec<f32>) {
+        linear::linear(self.level, x, &layer.weight, &layer.bias, activation, y);
+    }
+
+    fn blend(&mut self, weights: &Vec<f32>, basis: &Vec<f32>, residual: &mut Vec<f32>) {
+        blend::blend(self.level, weights, basis, residual);
+    }
+
+    fn add(&mut self, rest: &Vec<f32>, residual: &Vec<f32>, template: &mut Vec<f32>) {
+        add::add(rest, residual, template);
+    }
+
+    fn skin(
+        &mut self,
+        rest: &Vec<f32>,
+        skin: &Skin<Vec<f32>, Vec<u32>>,
+        transforms: &Vec<f32>,
+        space: Space,
+        positions: &mut Vec<f32>,
+    ) {
+        skin::skin(self.level, rest, &skin.joints, &skin.weights, transforms, space, positions);
+    }
+
+    fn features(
+        &mut self,
+        v: &Vec<f32>,
+        rest: &Vec<f32>,
+        reference: &Reference<Vec<f32>, Vec<u32>>,
+        nodes: &mut Vec<f32>,
+        potentials: &mut Vec<f32>,
+    ) {
+        features::features(v, rest, reference, nodes, potentials);
+    }
+
+    fn attend(
+        &mut self,
+        graph: &Graph<Vec<u32>>,
+        sizes: Sizes,
+        projected: &Vec<f32>,
+        potentials: &Vec<f32>,
+        layer: &Layer<Vec<f32>>,
+        attended: &mut Vec<f32>,
+    ) {
+        attend::attend(self.level, graph, sizes.heads, projected, potentials, &layer.edge, &mut self.scratch, attended);
+    }
+
+    fn gate(&mut self, attended: &Vec<f32>, projected: &Vec<f32>, layer: &Layer<Vec<f32>>, output: &mut Vec<f32>) {
+        gate::gate(self.level, attended, projected, &layer.gate, &layer.norm_weight, &layer.norm_bias, output);
+    }
+
+    fn normals(&mut self, positions: &Vec<f32>, triangles: &Vec<u32>, normals: &mut Vec<f32>) {
+        normals::normals(positions, triangles, normals);
+    }
+}

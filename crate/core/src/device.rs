@@ -1,0 +1,83 @@
+//! What a device must be able to do: the operations of the network, and storage for their operands.
+//! An operation is the unit of fusion: each has a file of its name on every device, and a gradient of its name for training.
+
+use crate::model::{Layer, Linear, Reference, Sizes, Skin};
+use crate::topology::Graph;
+
+/// What follows a linear layer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Activation {
+    /// Nothing.
+    None,
+    /// max(0, y).
+    Relu,
+}
+
+/// The space in which skinned positions are wanted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Space {
+    /// As the network works: heading and position of the hip removed.
+    Body,
+    /// World: `N⁻¹` applied last.
+    World,
+}
+
+/// A place where the network runs. All buffers hold f32, row-major; `n` vertices, `F` features, `C` heads.
+pub trait Device {
+    /// f32 storage.
+    type Buffer;
+    /// u32 storage, never changed.
+    type Indices;
+
+    /// New storage holding `values`.
+    fn buffer(&mut self, values: &[f32]) -> Self::Buffer;
+    /// New constant storage holding `indices`.
+    fn indices(&mut self, indices: &[u32]) -> Self::Indices;
+    /// Replaces the content of `buffer` by `values` of the same length.
+    fn write(&mut self, buffer: &mut Self::Buffer, values: &[f32]);
+
+    /// x [rows, inputs] -> y [rows, outputs], `y = act(W x + b)` row by row.
+    fn linear(&mut self, x: &Self::Buffer, layer: &Linear<Self::Buffer>, activation: Activation, y: &mut Self::Buffer);
+    /// weights [count] (one for all) or [n, count], basis [n, 3, count] -> residual [n, 3], `Σ_j w_j B_j`.
+    fn blend(&mut self, weights: &Self::Buffer, basis: &Self::Buffer, residual: &mut Self::Buffer);
+    /// rest + residual -> template, [n, 3] each.
+    fn add(&mut self, rest: &Self::Buffer, residual: &Self::Buffer, template: &mut Self::Buffer);
+    /// Linear blend skinning: rest [n, 3], transforms [J + 1, 3, 4] -> positions [n, 3].
+    fn skin(
+        &mut self,
+        rest: &Self::Buffer,
+        skin: &Skin<Self::Buffer, Self::Indices>,
+        transforms: &Self::Buffer,
+        space: Space,
+        positions: &mut Self::Buffer,
+    );
+    /// V [n, 3], T_C [n, 3] -> h⁰ [n, 3] and edge potentials [n, 6] = [V ; T_C] / edge_scale, whose differences are `e_ij`.
+    fn features(
+        &mut self,
+        v: &Self::Buffer,
+        rest: &Self::Buffer,
+        reference: &Reference<Self::Buffer, Self::Indices>,
+        nodes: &mut Self::Buffer,
+        potentials: &mut Self::Buffer,
+    );
+    /// projected [n, 4F] = q | k | v | r, potentials [n, 6] -> ĥ [n, F]: attention over the neighbours.
+    fn attend(
+        &mut self,
+        graph: &Graph<Self::Indices>,
+        sizes: Sizes,
+        projected: &Self::Buffer,
+        potentials: &Self::Buffer,
+        layer: &Layer<Self::Buffer>,
+        attended: &mut Self::Buffer,
+    );
+    /// ĥ [n, F], projected [n, 4F] -> h [n, F] = ReLU(LayerNorm((1-β) ĥ + β r)).
+    fn gate(
+        &mut self,
+        attended: &Self::Buffer,
+        projected: &Self::Buffer,
+        layer: &Layer<Self::Buffer>,
+        output: &mut Self::Buffer,
+    );
+    /// positions [n, 3], triangles [t, 3] -> area-weighted unit normals [n, 3].
+    fn normals(&mut self, positions: &Self::Buffer, triangles: &Self::Indices, normals: &mut Self::Buffer);
+}

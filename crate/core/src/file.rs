@@ -1,0 +1,218 @@
+//! Bytes <-> named tensors in the safetensors format. Knows no model.
+//! The `safetensors` crate brings serde_json and 39 kB of brotli to the browser (measured); the header is small, so it is read here.
+
+use crate::{Error, Result};
+use half::f16;
+use miniserde::json::{self, Array, Number, Object, Value};
+use std::collections::BTreeMap;
+
+/// Element type of a stored tensor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Dtype {
+    /// 32-bit float.
+    F32,
+    /// 16-bit float.
+    F16,
+    /// 32-bit unsigned integer.
+    U32,
+}
+
+impl Dtype {
+    const NAMES: [(&'static str, Dtype); 3] = [("F32", Dtype::F32), ("F16", Dtype::F16), ("U32", Dtype::U32)];
+
+    /// Name in the header.
+    pub fn name(self) -> &'static str {
+        Self::NAMES.iter().find(|entry| entry.1 == self).map_or("?", |entry| entry.0)
+    }
+
+    fn size(self) -> usize {
+        if self == Dtype::F16 { 2 } else { 4 }
+    }
+}
+
+/// One stored tensor: type, shape and little-endian bytes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tensor {
+    /// Element type.
+    pub dtype: Dtype,
+    /// Shape, row-major.
+    pub shape: Vec<usize>,
+    /// Little-endian elements.
+    pub bytes: Vec<u8>,
+}
+
+impl Tensor {
+    /// Tensor of F32 elements.
+    pub fn f32(shape: &[usize], values: &[f32]) -> Self {
+        debug_assert_eq!(shape.iter().product::<usize>(), values.len());
+        let bytes = values.iter().flat_map(|value| value.to_le_bytes()).collect();
+        Self { dtype: Dtype::F32, shape: shape.to_vec(), bytes }
+    }
+
+    /// Tensor of F16 elements, rounded from `values`.
+    pub fn f16(shape: &[usize], values: &[f32]) -> Self {
+        let bytes = values.iter().flat_map(|value| f16::from_f32(*value).to_le_bytes()).collect();
+        Self { dtype: Dtype::F16, shape: shape.to_vec(), bytes }
+    }
+
+    /// Tensor of U32 elements.
+    pub fn u32(shape: &[usize], values: &[u32]) -> Self {
+        let bytes = values.iter().flat_map(|value| value.to_le_bytes()).collect();
+        Self { dtype: Dtype::U32, shape: shape.to_vec(), bytes }
+    }
+
+    /// Elements as f32; `None` for an integer tensor.
+    pub fn to_f32(&self) -> Option<Vec<f32>> {
+        match self.dtype {
+            Dtype::F32 => Some(self.bytes.as_chunks().0.iter().map(|b| f32::from_le_bytes(*b)).collect()),
+            Dtype::F16 => Some(self.bytes.as_chunks().0.iter().map(|b| f16::from_le_bytes(*b).to_f32()).collect()),
+            Dtype::U32 => None,
+        }
+    }
+
+    /// Elements as u32; `None` for a float tensor.
+    pub fn to_u32(&self) -> Option<Vec<u32>> {
+        (self.dtype == Dtype::U32).then(|| self.bytes.as_chunks().0.iter().map(|b| u32::from_le_bytes(*b)).collect())
+    }
+}
+
+/// The content of one safetensors file.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Tensors {
+    /// `__metadata__`: free strings.
+    pub metadata: BTreeMap<String, String>,
+    /// Tensors by name.
+    pub tensors: BTreeMap<String, Tensor>,
+}
+
+impl Tensors {
+    /// Reads a whole file; nothing in it is trusted.
+    pub fn parse(bytes: &[u8]) -> Result<Self> {
+        let malformed = |reason: &str| Error::NotSafetensors(reason.to_owned());
+        let (length, rest) = bytes.split_first_chunk::<8>().ok_or_else(|| malformed("shorter than 8 bytes"))?;
+        let length = usize::try_from(u64::from_le_bytes(*length)).unwrap_or(usize::MAX);
+        let header = rest
+            .get(..length)
+            .ok_or_else(|| malformed(&format!("header of {length} bytes in a file of {}", bytes.len())))?;
+        let header = std::str::from_utf8(header).map_err(|_| malformed("header is not UTF-8"))?;
+        let header: Object = json::from_str(header).map_err(|_| malformed("header is not a JSON object"))?;
+        let mut file = Tensors::default();
+        for (name, entry) in &header {
+            match entry {
+                Value::Object(strings) if name == "__metadata__" => file.metadata = metadata(strings)?,
+                Value::Object(entry) => {
+                    let tensor = tensor(name, entry, &rest[length..])?;
+                    file.tensors.insert(name.clone(), tensor);
+                }
+                _ => return Err(malformed(&format!("entry {name} is not an object"))),
+            }
+        }
+        Ok(file)
+    }
+
+    /// The file's bytes: header, then tensors in the order of their names.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let mut header = Object::new();
+        if !self.metadata.is_empty() {
+            let strings = self.metadata.iter().map(|(key, value)| (key.clone(), Value::String(value.clone())));
+            header.insert("__metadata__".to_owned(), Value::Object(strings.collect()));
+        }
+        let mut start = 0;
+        for (name, tensor) in &self.tensors {
+            let end = start + tensor.bytes.len();
+            let mut entry = Object::new();
+            entry.insert("dtype".to_owned(), Value::String(tensor.dtype.name().to_owned()));
+            entry.insert("shape".to_owned(), numbers(&tensor.shape));
+            entry.insert("data_offsets".to_owned(), numbers(&[start, end]));
+            header.insert(name.clone(), Value::Object(entry));
+            start = end;
+        }
+        let mut header = json::to_string(&header);
+        header.extend(std::iter::repeat_n(' ', header.len().next_multiple_of(8) - header.len()));
+        let mut bytes = (header.len() as u64).to_le_bytes().to_vec();
+        bytes.extend(header.as_bytes());
+        self.tensors.values().for_each(|tensor| bytes.extend(&tensor.bytes));
+        bytes
+    }
+
+    /// The tensor of that name.
+    pub fn get(&self, name: &str) -> Result<&Tensor> {
+        self.tensors.get(name).ok_or_else(|| Error::MissingTensor(name.to_owned()))
+    }
+
+    /// The tensor of that name as finite f32, checked against `shape`; a `None` in it takes any size.
+    pub fn f32(&self, name: &str, shape: &[Option<usize>]) -> Result<(Vec<f32>, Vec<usize>)> {
+        let tensor = self.checked(name, shape)?;
+        let values = tensor.to_f32().ok_or_else(|| wrong(name, "F32 or F16", tensor.dtype.name()))?;
+        match values.iter().position(|value| !value.is_finite()) {
+            Some(element) => Err(Error::NotFinite { what: name.to_owned(), element, found: values[element] }),
+            None => Ok((values, tensor.shape.clone())),
+        }
+    }
+
+    /// The tensor of that name as u32 below `limit`, checked against `shape`.
+    pub fn u32(&self, name: &str, shape: &[Option<usize>], limit: usize) -> Result<Vec<u32>> {
+        let tensor = self.checked(name, shape)?;
+        let values = tensor.to_u32().ok_or_else(|| wrong(name, "U32", tensor.dtype.name()))?;
+        match values.iter().position(|value| *value as usize >= limit) {
+            Some(element) => Err(Error::Index { tensor: name.to_owned(), element, found: values[element], limit }),
+            None => Ok(values),
+        }
+    }
+
+    fn checked(&self, name: &str, shape: &[Option<usize>]) -> Result<&Tensor> {
+        let tensor = self.get(name)?;
+        let same = |(wanted, found): (&Option<usize>, &usize)| wanted.is_none_or(|size| size == *found);
+        if tensor.shape.len() == shape.len() && shape.iter().zip(&tensor.shape).all(same) {
+            return Ok(tensor);
+        }
+        let sizes = shape.iter().map(|size| size.map_or("*".to_owned(), |size| size.to_string()));
+        let wanted = format!("shape [{}]", sizes.collect::<Vec<_>>().join(", "));
+        Err(wrong(name, &wanted, &format!("{:?}", tensor.shape)))
+    }
+}
+
+fn wrong(tensor: &str, wanted: &str, found: &str) -> Error {
+    Error::Shape { tensor: tensor.to_owned(), wanted: wanted.to_owned(), found: found.to_owned() }
+}
+
+fn metadata(strings: &Object) -> Result<BTreeMap<String, String>> {
+    let text = |(key, value): (&String, &Value)| match value {
+        Value::String(text) => Ok((key.clone(), text.clone())),
+        _ => Err(Error::NotSafetensors(format!("__metadata__ {key} is not a string"))),
+    };
+    strings.iter().map(text).collect()
+}
+
+fn tensor(name: &str, entry: &Object, payload: &[u8]) -> Result<Tensor> {
+    let malformed = |reason: String| Error::NotSafetensors(format!("tensor {name}: {reason}"));
+    let dtype = match entry.get("dtype") {
+        Some(Value::String(text)) => Dtype::NAMES.iter().find(|known| known.0 == text).map(|known| known.1),
+        _ => None,
+    };
+    let dtype = dtype.ok_or_else(|| malformed("dtype is none of F32, F16, U32".to_owned()))?;
+    let shape = sizes(entry.get("shape")).ok_or_else(|| malformed("shape is no list of sizes".to_owned()))?;
+    let offsets = sizes(entry.get("data_offsets")).filter(|offsets| offsets.len() == 2 && offsets[0] <= offsets[1]);
+    let offsets = offsets.ok_or_else(|| malformed("data_offsets are no range".to_owned()))?;
+    let wanted = shape.iter().try_fold(dtype.size(), |bytes, size| bytes.checked_mul(*size));
+    if wanted != Some(offsets[1] - offsets[0]) {
+        return Err(malformed(format!("shape {shape:?} does not fill {} bytes", offsets[1] - offsets[0])));
+    }
+    let truncated = || Error::Truncated { tensor: name.to_owned(), wanted: offsets[1], found: payload.len() };
+    let bytes = payload.get(offsets[0]..offsets[1]).ok_or_else(truncated)?.to_vec();
+    Ok(Tensor { dtype, shape, bytes })
+}
+
+fn sizes(value: Option<&Value>) -> Option<Vec<usize>> {
+    let Some(Value::Array(array)) = value else { return None };
+    let size = |value: &Value| match value {
+        Value::Number(Number::U64(size)) => usize::try_from(*size).ok(),
+        _ => None,
+    };
+    array.iter().map(size).collect()
+}
+
+fn numbers(sizes: &[usize]) -> Value {
+    let number = |size: &usize| Value::Number(Number::U64(*size as u64));
+    Value::Array(sizes.iter().map(number).collect::<Array>())
+}

@@ -1,0 +1,231 @@
+//! Model file -> model, checking every name, shape and index. network.md §8.
+
+use super::{HostModel, Layer, Linear, Model, Reference, Sizes, Skin, Surface};
+use crate::file::Tensors;
+use crate::pose::{Frame, Rig};
+use crate::topology::Graph;
+use crate::{Error, Result};
+use miniserde::{Deserialize, json};
+
+/// The JSON object under `__metadata__["ctsn"]`.
+#[derive(Deserialize)]
+struct Description {
+    version: u32,
+    frame: String,
+    root: usize,
+    joints: Vec<String>,
+    inverse_bind: Vec<Vec<f32>>,
+    heads: usize,
+    edge_scale: f32,
+}
+
+impl HostModel {
+    /// Reads a model file; nothing in it is trusted.
+    pub fn parse(bytes: &[u8]) -> Result<Self> {
+        let file = Tensors::parse(bytes)?;
+        let description = describe(&file)?;
+        let (rest, shape) = file.f32("cloth.rest", &[None, Some(3)])?;
+        let (n, joints) = (shape[0], description.joints.len());
+        if n == 0 || joints == 0 {
+            return Err(Error::NotModel(format!("wanted vertices and joints, found {n} and {joints}")));
+        }
+        let triangles = file.u32("cloth.triangles", &[None, Some(3)], n)?;
+        let dense = file.f32("cloth.weights", &[Some(n), Some(joints)])?.0;
+        let (skeleton, m) = basis(&file, "skeleton.basis", n)?;
+        let (mesh, k) = basis(&file, "mesh.basis", n)?;
+        let embedding = mlp(&file, "embedding", 12 * joints, Some(m))?;
+        let layers = graph(&file)?;
+        let features = layers.last().map_or(3, |layer| layer.project.outputs / 4);
+        let heads = description.heads;
+        if layers.is_empty()
+            || heads == 0
+            || layers.iter().any(|layer| layer.project.outputs != 4 * features)
+            || features % heads != 0
+        {
+            return Err(Error::NotModel(format!(
+                "{heads} heads do not divide {} graph layers of {features} features",
+                layers.len()
+            )));
+        }
+        Ok(Model {
+            sizes: Sizes { vertices: n, joints, embedding: m, basis: k, features, heads },
+            graph: Graph::new(n, &triangles),
+            triangles,
+            rest,
+            skin: Skin::from_dense(&dense, joints),
+            reference: reference(&file, n, joints, description.edge_scale)?,
+            embedding,
+            skeleton,
+            layers,
+            vertex: mlp(&file, "vertex", features, Some(k))?,
+            mesh,
+            surface: surface(&file, n)?,
+            training: file.metadata.get("training").cloned(),
+            rig: rig(&file, description)?,
+        })
+    }
+}
+
+fn describe(file: &Tensors) -> Result<Description> {
+    let text = file.metadata.get("ctsn").ok_or_else(|| Error::NotModel("__metadata__ has no key ctsn".to_owned()))?;
+    let description: Description = json::from_str(text).map_err(|_| {
+        Error::NotModel(
+            "__metadata__.ctsn lacks version, frame, root, joints, inverse_bind, heads or edge_scale".to_owned(),
+        )
+    })?;
+    if description.version != 1 {
+        return Err(Error::NotModel(format!("wanted version 1, found {}", description.version)));
+    }
+    Ok(description)
+}
+
+fn rig(file: &Tensors, description: Description) -> Result<Rig> {
+    let joints = description.joints.len();
+    let frame = match description.frame.as_str() {
+        "hip_yaw" => Frame::HipYaw,
+        "hip" => Frame::Hip,
+        other => return Err(Error::NotModel(format!("wanted frame hip_yaw or hip, found {other}"))),
+    };
+    if description.root >= joints {
+        return Err(Error::NotModel(format!("root {} is not below {joints} joints", description.root)));
+    }
+    let transform = |numbers: &Vec<f32>| <[f32; 12]>::try_from(numbers.as_slice()).ok();
+    let inverse_bind: Option<Vec<_>> = description.inverse_bind.iter().map(transform).collect();
+    let inverse_bind = inverse_bind.filter(|list| list.len() == joints).ok_or_else(|| {
+        Error::NotModel(format!(
+            "inverse_bind: wanted {joints} lists of 12 numbers, found {}",
+            description.inverse_bind.len()
+        ))
+    })?;
+    finite("inverse_bind", inverse_bind.as_flattened())?;
+    let mean = file.f32("pose.mean", &[Some(12 * joints)])?.0;
+    let std = file.f32("pose.std", &[Some(12 * joints)])?.0;
+    positive("pose.std", &std)?;
+    Ok(Rig { frame, root: description.root, joints: description.joints, inverse_bind, mean, std })
+}
+
+fn reference(file: &Tensors, n: usize, joints: usize, edge_scale: f32) -> Result<Reference<Vec<f32>, Vec<u32>>> {
+    let (rest, shape) = file.f32("reference.rest", &[None, Some(3)])?;
+    let weights = file.f32("reference.weights", &[Some(shape[0]), Some(joints)])?.0;
+    let index = file.u32("reference.index", &[Some(n)], shape[0])?;
+    let gather = |rows: &[f32], width: usize| -> Vec<f32> {
+        index.iter().flat_map(|i| rows[*i as usize * width..][..width].iter().copied()).collect()
+    };
+    let three = |name: &str| -> Result<[f32; 3]> {
+        let values = file.f32(name, &[Some(3)])?.0;
+        Ok([values[0], values[1], values[2]])
+    };
+    let (mean, std) = (three("reference.mean")?, three("reference.std")?);
+    positive("reference.std", &std)?;
+    positive("edge_scale", &[edge_scale])?;
+    let skin = Skin::from_dense(&gather(&weights, joints), joints);
+    Ok(Reference { rest: gather(&rest, 3), skin, mean, std, edge_scale })
+}
+
+impl Skin<Vec<f32>, Vec<u32>> {
+    /// Dense weights [n, joints] -> rows as wide as the fullest vertex needs.
+    pub fn from_dense(dense: &[f32], joints: usize) -> Self {
+        let used = |row: &[f32]| row.iter().filter(|weight| **weight != 0.0).count();
+        let width = dense.chunks_exact(joints).map(used).max().unwrap_or(0).max(1);
+        let mut skin = Skin { joints: Vec::new(), weights: Vec::new(), width };
+        for (i, row) in dense.chunks_exact(joints).enumerate() {
+            for (joint, weight) in row.iter().enumerate().filter(|entry| *entry.1 != 0.0) {
+                skin.joints.push(joint as u32);
+                skin.weights.push(*weight);
+            }
+            skin.joints.resize((i + 1) * width, 0);
+            skin.weights.resize((i + 1) * width, 0.0);
+        }
+        skin
+    }
+}
+
+/// `[count, n, 3]` in the file -> vertex-major `[n, 3, count]`, so that one vertex's numbers lie together.
+fn basis(file: &Tensors, name: &str, n: usize) -> Result<(Vec<f32>, usize)> {
+    let (values, shape) = file.f32(name, &[None, Some(n), Some(3)])?;
+    if shape[0] == 0 {
+        return Err(Error::NotModel(format!("{name} holds no matrix")));
+    }
+    Ok((transpose(&values, shape[0], n * 3), shape[0]))
+}
+
+/// [rows, columns] -> [columns, rows].
+pub(super) fn transpose(values: &[f32], rows: usize, columns: usize) -> Vec<f32> {
+    (0..rows * columns).map(|i| values[i % rows * columns + i / rows]).collect()
+}
+
+fn linear(file: &Tensors, name: &str, inputs: Option<usize>, outputs: Option<usize>) -> Result<Linear<Vec<f32>>> {
+    let (weight, shape) = file.f32(&format!("{name}.weight"), &[outputs, inputs])?;
+    let bias = file.f32(&format!("{name}.bias"), &[Some(shape[0])])?.0;
+    Ok(Linear { weight: transpose(&weight, shape[0], shape[1]), bias, inputs: shape[1], outputs: shape[0] })
+}
+
+/// Layers `{name}.0`, `{name}.1`, … as many as there are; the last one has `outputs`.
+fn mlp(file: &Tensors, name: &str, inputs: usize, outputs: Option<usize>) -> Result<Vec<Linear<Vec<f32>>>> {
+    let count = (0..).take_while(|i| file.tensors.contains_key(&format!("{name}.{i}.weight"))).count();
+    let (mut layers, mut inputs) = (Vec::new(), inputs);
+    for i in 0..count.max(1) {
+        let last = if i + 1 == count { outputs } else { None };
+        let layer = linear(file, &format!("{name}.{i}"), Some(inputs), last)?;
+        inputs = layer.outputs;
+        layers.push(layer);
+    }
+    Ok(layers)
+}
+
+fn graph(file: &Tensors) -> Result<Vec<Layer<Vec<f32>>>> {
+    let count = (0..).take_while(|l| file.tensors.contains_key(&format!("graph.{l}.query.weight"))).count();
+    let (mut layers, mut inputs) = (Vec::new(), 3);
+    for l in 0..count {
+        let layer = layer(file, l, inputs)?;
+        inputs = layer.project.outputs / 4;
+        layers.push(layer);
+    }
+    Ok(layers)
+}
+
+fn layer(file: &Tensors, l: usize, inputs: usize) -> Result<Layer<Vec<f32>>> {
+    let name = |part: &str| format!("graph.{l}.{part}");
+    let query = linear(file, &name("query"), Some(inputs), None)?;
+    let features = query.outputs;
+    let other = |part: &str| linear(file, &name(part), Some(inputs), Some(features));
+    let parts = [query, other("key")?, other("value")?, other("skip")?];
+    let rows = |input: usize| parts.iter().flat_map(move |part| &part.weight[input * features..][..features]);
+    let vector = |part: &str, size: usize| Ok(file.f32(&name(part), &[Some(size)])?.0);
+    Ok(Layer {
+        project: Linear {
+            weight: (0..inputs).flat_map(rows).copied().collect(),
+            bias: parts.iter().flat_map(|part| &part.bias).copied().collect(),
+            inputs,
+            outputs: 4 * features,
+        },
+        edge: transpose(&file.f32(&name("edge.weight"), &[Some(features), Some(6)])?.0, features, 6),
+        gate: vector("gate.weight", 3 * features)?,
+        norm_weight: vector("norm.weight", features)?,
+        norm_bias: vector("norm.bias", features)?,
+    })
+}
+
+fn surface(file: &Tensors, n: usize) -> Result<Option<Surface>> {
+    if !file.tensors.contains_key("draw.vertex") {
+        return Ok(None);
+    }
+    let vertex = file.u32("draw.vertex", &[None], n)?;
+    let uv = file.f32("draw.uv", &[Some(vertex.len()), Some(2)])?.0;
+    let triangles = file.u32("draw.triangles", &[None, Some(3)], vertex.len())?;
+    Ok(Some(Surface { vertex, uv, triangles }))
+}
+
+fn finite(what: &str, values: &[f32]) -> Result<()> {
+    match values.iter().position(|value| !value.is_finite()) {
+        Some(element) => Err(Error::NotFinite { what: what.to_owned(), element, found: values[element] }),
+        None => Ok(()),
+    }
+}
+
+fn positive(what: &str, values: &[f32]) -> Result<()> {
+    match values.iter().position(|value| !(value.is_finite() && *value > 0.0)) {
+        Some(element) => Err(Error::NotPositive { what: what.to_owned(), element, found: values[element] }),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,166 @@
+//! Model -> model file, the inverse of `read.rs`. network.md §8.
+
+use super::read::transpose;
+use super::{HostModel, Linear, Skin};
+use crate::file::{Tensor, Tensors};
+use crate::pose::Frame;
+use miniserde::{Serialize, json};
+
+/// How learned tensors are stored; everything else stays F32.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Storage {
+    /// 32-bit floats.
+    F32,
+    /// 16-bit floats: half the bytes.
+    F16,
+}
+
+#[derive(Serialize)]
+struct Description {
+    version: u32,
+    frame: String,
+    root: usize,
+    joints: Vec<String>,
+    inverse_bind: Vec<Vec<f32>>,
+    heads: usize,
+    edge_scale: f32,
+}
+
+struct Writer {
+    file: Tensors,
+    storage: Storage,
+}
+
+impl Writer {
+    fn fixed(&mut self, name: &str, shape: &[usize], values: &[f32]) {
+        self.file.tensors.insert(name.to_owned(), Tensor::f32(shape, values));
+    }
+
+    fn learned(&mut self, name: &str, shape: &[usize], values: &[f32]) {
+        let tensor = match self.storage {
+            Storage::F32 => Tensor::f32(shape, values),
+            Storage::F16 => Tensor::f16(shape, values),
+        };
+        self.file.tensors.insert(name.to_owned(), tensor);
+    }
+
+    fn indices(&mut self, name: &str, shape: &[usize], values: &[u32]) {
+        self.file.tensors.insert(name.to_owned(), Tensor::u32(shape, values));
+    }
+
+    fn linear(&mut self, name: &str, layer: &Linear<Vec<f32>>) {
+        let weight = transpose(&layer.weight, layer.inputs, layer.outputs);
+        self.learned(&format!("{name}.weight"), &[layer.outputs, layer.inputs], &weight);
+        self.learned(&format!("{name}.bias"), &[layer.outputs], &layer.bias);
+    }
+}
+
+impl HostModel {
+    /// The model file's bytes.
+    pub fn to_bytes(&self, storage: Storage) -> Vec<u8> {
+        let mut writer = Writer { file: Tensors::default(), storage };
+        writer.file.metadata.insert("ctsn".to_owned(), self.description());
+        if let Some(training) = &self.training {
+            writer.file.metadata.insert("training".to_owned(), training.clone());
+        }
+        self.write_cloth(&mut writer);
+        self.write_reference(&mut writer);
+        self.write_network(&mut writer);
+        writer.file.to_bytes()
+    }
+
+    fn description(&self) -> String {
+        json::to_string(&Description {
+            version: 1,
+            frame: match self.rig.frame {
+                Frame::HipYaw => "hip_yaw".to_owned(),
+                Frame::Hip => "hip".to_owned(),
+            },
+            root: self.rig.root,
+            joints: self.rig.joints.clone(),
+            inverse_bind: self.rig.inverse_bind.iter().map(|transform| transform.to_vec()).collect(),
+            heads: self.sizes.heads,
+            edge_scale: self.reference.edge_scale,
+        })
+    }
+
+    fn write_cloth(&self, writer: &mut Writer) {
+        let (n, joints) = (self.sizes.vertices, self.sizes.joints);
+        writer.fixed("cloth.rest", &[n, 3], &self.rest);
+        writer.indices("cloth.triangles", &[self.triangles.len() / 3, 3], &self.triangles);
+        writer.learned("cloth.weights", &[n, joints], &self.skin.to_dense(joints));
+        if let Some(surface) = &self.surface {
+            writer.indices("draw.vertex", &[surface.vertex.len()], &surface.vertex);
+            writer.fixed("draw.uv", &[surface.vertex.len(), 2], &surface.uv);
+            writer.indices("draw.triangles", &[surface.triangles.len() / 3, 3], &surface.triangles);
+        }
+        writer.fixed("pose.mean", &[12 * joints], &self.rig.mean);
+        writer.fixed("pose.std", &[12 * joints], &self.rig.std);
+    }
+
+    /// The gathered reference vertices, each distinct one once.
+    fn write_reference(&self, writer: &mut Writer) {
+        let (joints, reference) = (self.sizes.joints, &self.reference);
+        let dense = reference.skin.to_dense(joints);
+        let mut rows = std::collections::BTreeMap::new();
+        let (mut rest, mut weights, mut index) = (Vec::new(), Vec::new(), Vec::new());
+        for (position, row) in reference.rest.chunks_exact(3).zip(dense.chunks_exact(joints)) {
+            let bits = |value: &f32| value.to_bits();
+            let key: Vec<u32> = position.iter().chain(row).map(bits).collect();
+            let next = rows.len() as u32;
+            let place = *rows.entry(key).or_insert(next);
+            if place == next {
+                rest.extend_from_slice(position);
+                weights.extend_from_slice(row);
+            }
+            index.push(place);
+        }
+        writer.fixed("reference.rest", &[rows.len(), 3], &rest);
+        writer.fixed("reference.weights", &[rows.len(), joints], &weights);
+        writer.indices("reference.index", &[index.len()], &index);
+        writer.fixed("reference.mean", &[3], &reference.mean);
+        writer.fixed("reference.std", &[3], &reference.std);
+    }
+
+    fn write_network(&self, writer: &mut Writer) {
+        let sizes = self.sizes;
+        let (n, features) = (sizes.vertices, sizes.features);
+        for (name, basis, count) in
+            [("skeleton.basis", &self.skeleton, sizes.embedding), ("mesh.basis", &self.mesh, sizes.basis)]
+        {
+            writer.learned(name, &[count, n, 3], &transpose(basis, n * 3, count));
+        }
+        for (name, layers) in [("embedding", &self.embedding), ("vertex", &self.vertex)] {
+            layers.iter().enumerate().for_each(|(i, layer)| writer.linear(&format!("{name}.{i}"), layer));
+        }
+        for (l, layer) in self.layers.iter().enumerate() {
+            for (part, name) in ["query", "key", "value", "skip"].iter().enumerate() {
+                let columns = |row: &[f32]| row[part * features..][..features].to_vec();
+                let stacked = layer.project.weight.chunks_exact(4 * features);
+                let weight = stacked.flat_map(columns).collect();
+                let linear = Linear {
+                    weight,
+                    bias: columns(&layer.project.bias),
+                    inputs: layer.project.inputs,
+                    outputs: features,
+                };
+                writer.linear(&format!("graph.{l}.{name}"), &linear);
+            }
+            writer.learned(&format!("graph.{l}.edge.weight"), &[features, 6], &transpose(&layer.edge, 6, features));
+            writer.learned(&format!("graph.{l}.gate.weight"), &[3 * features], &layer.gate);
+            writer.learned(&format!("graph.{l}.norm.weight"), &[features], &layer.norm_weight);
+            writer.learned(&format!("graph.{l}.norm.bias"), &[features], &layer.norm_bias);
+        }
+    }
+}
+
+impl Skin<Vec<f32>, Vec<u32>> {
+    /// Weights as a dense matrix [n, joints].
+    pub fn to_dense(&self, joints: usize) -> Vec<f32> {
+        let mut dense = vec![0.0; self.weights.len() / self.width * joints];
+        for (slot, (joint, weight)) in self.joints.iter().zip(&self.weights).enumerate() {
+            dense[slot / self.width * joints + *joint as usize] += weight;
+        }
+        dense
+    }
+}

@@ -1,0 +1,104 @@
+//! A model ready to predict on the CPU: load once, then one call per frame without any allocation.
+
+use crate::Result;
+use crate::cpu::{Cpu, Level};
+use crate::device::{Device, Space};
+use crate::model::{HostModel, Sizes, Surface};
+use crate::network::{Activations, Streams, forward};
+use crate::pose::{BodyFrame, Rig, Transform};
+
+/// A model on the CPU device with every buffer it needs.
+pub struct Predictor {
+    device: Cpu,
+    model: HostModel,
+    frame: BodyFrame,
+    activations: Activations<Vec<f32>>,
+    normals: Vec<f32>,
+}
+
+impl Predictor {
+    /// Reads a model file (network.md §8) for the best SIMD level of this machine.
+    pub fn new(bytes: &[u8]) -> Result<Self> {
+        Ok(Self::from_model(HostModel::parse(bytes)?, Level::new()))
+    }
+
+    /// A model at a chosen SIMD level.
+    pub fn from_model(model: HostModel, level: Level) -> Self {
+        let mut device = Cpu::with_level(level);
+        let sizes = model.sizes;
+        let activations = Activations::new(&model, |length| device.buffer(&vec![0.0; length]));
+        Self { frame: BodyFrame::new(sizes.joints), normals: vec![0.0; sizes.vertices * 3], device, model, activations }
+    }
+
+    /// Sizes of the network.
+    pub fn sizes(&self) -> Sizes {
+        self.model.sizes
+    }
+
+    /// Joints, inverse bind transforms and body frame.
+    pub fn rig(&self) -> &Rig {
+        &self.model.rig
+    }
+
+    /// Joint names, in the order of a pose.
+    pub fn joints(&self) -> &[String] {
+        &self.model.rig.joints
+    }
+
+    /// Index of the hip.
+    pub fn root(&self) -> usize {
+        self.model.rig.root
+    }
+
+    /// `B_j⁻¹` per joint, row-major 3×4.
+    pub fn inverse_bind(&self) -> &[Transform] {
+        &self.model.rig.inverse_bind
+    }
+
+    /// Cloth triangles [t, 3].
+    pub fn triangles(&self) -> &[u32] {
+        &self.model.triangles
+    }
+
+    /// What is drawn, when it differs from the cloth mesh.
+    pub fn surface(&self) -> Option<&Surface> {
+        self.model.surface.as_ref()
+    }
+
+    /// Joint world matrices [J, 16], column-major as in three.js, metres -> positions and normals.
+    pub fn predict(&mut self, joints: &[f32], streams: Streams) -> Result<()> {
+        self.model.rig.body_frame_column_major(joints, &mut self.frame)?;
+        self.run(streams);
+        Ok(())
+    }
+
+    /// Joint world transforms [J, 3, 4], row-major, metres -> positions and normals.
+    pub fn predict_row_major(&mut self, joints: &[f32], streams: Streams) -> Result<()> {
+        self.model.rig.body_frame(joints, &mut self.frame)?;
+        self.run(streams);
+        Ok(())
+    }
+
+    fn run(&mut self, streams: Streams) {
+        let a = &mut self.activations;
+        self.device.write(&mut a.pose, &self.frame.vector);
+        self.device.write(&mut a.body_frame, &self.frame.transforms);
+        forward(&mut self.device, &self.model, streams, Space::World, a);
+        self.device.normals(&a.positions, &self.model.triangles, &mut self.normals);
+    }
+
+    /// Predicted positions [n, 3], world, metres.
+    pub fn positions(&self) -> &[f32] {
+        &self.activations.positions
+    }
+
+    /// Unit vertex normals [n, 3] of the predicted positions.
+    pub fn normals(&self) -> &[f32] {
+        &self.normals
+    }
+
+    /// Every intermediate result of the last prediction.
+    pub fn activations(&self) -> &Activations<Vec<f32>> {
+        &self.activations
+    }
+}

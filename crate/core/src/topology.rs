@@ -1,0 +1,41 @@
+//! Triangles -> neighbour lists. network.md §3: the edges of the cloth triangles, both directions, no self loops.
+
+/// Neighbour lists of `n` vertices in compressed rows: vertex `i` has `neighbours[offsets[i]..offsets[i + 1]]`, ascending.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Graph<I> {
+    /// Row starts, n + 1.
+    pub offsets: I,
+    /// Neighbours, one entry per directed edge.
+    pub neighbours: I,
+}
+
+impl Graph<Vec<u32>> {
+    /// Neighbour lists of the edges of `triangles` [t,3] over `n` vertices; every index must be below `n`.
+    pub fn new(n: usize, triangles: &[u32]) -> Self {
+        let mut edges = Vec::with_capacity(triangles.len() * 2);
+        for triangle in triangles.as_chunks::<3>().0 {
+            for (a, b) in [(0, 1), (1, 2), (2, 0)] {
+                edges.push((triangle[a], triangle[b]));
+                edges.push((triangle[b], triangle[a]));
+            }
+        }
+        edges.retain(|(a, b)| a != b);
+        edges.sort_unstable();
+        edges.dedup();
+        let mut offsets = vec![0; n + 1];
+        edges.iter().for_each(|edge| offsets[edge.0 as usize + 1] += 1);
+        (0..n).for_each(|i| offsets[i + 1] += offsets[i]);
+        Self { offsets, neighbours: edges.into_iter().map(|edge| edge.1).collect() }
+    }
+
+    /// Neighbours of vertex `i`.
+    pub fn of(&self, i: usize) -> &[u32] {
+        &self.neighbours[self.offsets[i] as usize..self.offsets[i + 1] as usize]
+    }
+}
+
+impl<I> Graph<I> {
+    pub(crate) fn map<J>(&self, indices: &mut impl FnMut(&I) -> J) -> Graph<J> {
+        Graph { offsets: indices(&self.offsets), neighbours: indices(&self.neighbours) }
+    }
+}
