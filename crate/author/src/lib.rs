@@ -1,6 +1,8 @@
 //! Authoring: rigged character + garment + motion -> quasi-static simulation -> training -> evaluation -> model file.
 
+pub mod dataset;
 mod error;
 pub mod rig;
+pub mod train;
 
 pub use error::{Error, Result};

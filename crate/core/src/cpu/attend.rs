@@ -36,7 +36,7 @@ pub fn attend(
 
 /// Moves the edge term into the nodes: projected, potentials -> `k + U | v + U | U`.
 #[inline(always)]
-fn fold<S: Simd>(simd: S, projected: &[f32], potentials: &[f32], edge: &[f32], nodes: &mut Vec<f32>) {
+pub fn fold<S: Simd>(simd: S, projected: &[f32], potentials: &[f32], edge: &[f32], nodes: &mut Vec<f32>) {
     let features = edge.len() / 6;
     nodes.resize(projected.len() / 4 * 3, 0.0);
     let rows = projected.chunks_exact(4 * features).zip(potentials.as_chunks::<6>().0);
@@ -92,7 +92,7 @@ fn kernel<S: Simd>(
 
 /// Softmax of each row of `degree` scores.
 #[inline(always)]
-fn softmax<S: Simd>(simd: S, scores: &mut [f32], degree: usize) {
+pub fn softmax<S: Simd>(simd: S, scores: &mut [f32], degree: usize) {
     for row in scores.chunks_exact_mut(degree) {
         let largest = row.iter().copied().fold(f32::MIN, f32::max);
         row.iter_mut().for_each(|score| *score -= largest);

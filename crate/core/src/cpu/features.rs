@@ -1,12 +1,12 @@
 //! h⁰ and the edge potentials, whose differences are the edge features `e_ij`. network.md §3.
 
-use crate::model::Reference;
-
 /// v [n, 3], rest [n, 3] -> nodes [n, 3], potentials [n, 6] = [V ; T_C] / edge_scale.
 pub fn features(
     v: &[f32],
     rest: &[f32],
-    reference: &Reference<Vec<f32>, Vec<u32>>,
+    mean: &[f32; 3],
+    std: &[f32; 3],
+    edge_scale: f32,
     nodes: &mut [f32],
     potentials: &mut [f32],
 ) {
@@ -14,9 +14,9 @@ pub fn features(
     let outputs = nodes.as_chunks_mut::<3>().0.iter_mut().zip(potentials.as_chunks_mut::<6>().0);
     for ((v, rest), (node, potential)) in rows.zip(outputs) {
         for c in 0..3 {
-            node[c] = (v[c] - reference.mean[c]) / reference.std[c];
-            potential[c] = v[c] / reference.edge_scale;
-            potential[3 + c] = rest[c] / reference.edge_scale;
+            node[c] = (v[c] - mean[c]) / std[c];
+            potential[c] = v[c] / edge_scale;
+            potential[3 + c] = rest[c] / edge_scale;
         }
     }
 }

@@ -10,7 +10,7 @@ pub mod gate;
 pub mod linear;
 pub mod normals;
 pub mod skin;
-mod vector;
+pub mod vector;
 
 use crate::device::{Activation, Device, Space};
 use crate::model::{Layer, Linear, Reference, Sizes, Skin};
@@ -88,7 +88,7 @@ impl Device for Cpu {
         nodes: &mut Vec<f32>,
         potentials: &mut Vec<f32>,
     ) {
-        features::features(v, rest, reference, nodes, potentials);
+        features::features(v, rest, &reference.mean, &reference.std, reference.edge_scale, nodes, potentials);
     }
 
     fn attend(

@@ -1,0 +1,38 @@
+//! Adam (Kingma and Ba 2015), with cosine decay of the learning rate. network.md §6.
+
+const BETA1: f32 = 0.9;
+const BETA2: f32 = 0.999;
+const EPSILON: f32 = 1e-8;
+
+/// First and second moments of one parameter array.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Moments {
+    /// Mean of the gradient.
+    pub mean: Vec<f32>,
+    /// Mean of its square.
+    pub square: Vec<f32>,
+}
+
+impl Moments {
+    /// Moments at rest.
+    pub fn new(length: usize) -> Self {
+        Self { mean: vec![0.0; length], square: vec![0.0; length] }
+    }
+
+    /// One step, number `step` (from 1), against `gradient`.
+    pub fn step(&mut self, step: usize, rate: f32, gradient: &[f32], parameter: &mut [f32]) {
+        let power = step.min(1_000_000) as i32;
+        let rate = rate * (1.0 - BETA2.powi(power)).sqrt() / (1.0 - BETA1.powi(power));
+        let moments = self.mean.iter_mut().zip(&mut self.square);
+        for ((parameter, g), (mean, square)) in parameter.iter_mut().zip(gradient).zip(moments) {
+            *mean = BETA1 * *mean + (1.0 - BETA1) * g;
+            *square = BETA2 * *square + (1.0 - BETA2) * g * g;
+            *parameter -= rate * *mean / (square.sqrt() + EPSILON);
+        }
+    }
+}
+
+/// Learning rate at `progress` in [0, 1]: cosine from `rate` down to 1 % of it.
+pub fn cosine(rate: f32, progress: f32) -> f32 {
+    rate * (0.01 + 0.99 * 0.5 * (1.0 + (std::f32::consts::PI * progress.clamp(0.0, 1.0)).cos()))
+}

@@ -1,0 +1,220 @@
+//! The model before its first step: everything that is not learned, and seeded initial weights.
+//! `W_C^I[i]` are the skin weights of the body vertex nearest to cloth vertex `i` (KD-tree). network.md §3, §4.
+
+use crate::dataset::{Sample, Setup};
+use crate::rig::SkinWeights;
+use crate::{Error, Result};
+use ctsn_core::cpu::{Level, skin};
+use ctsn_core::device::Space;
+use ctsn_core::model::{HostModel, Layer, Linear, Reference, Sizes, Skin};
+use ctsn_core::pose::{BodyFrame, Frame, Rig};
+use ctsn_core::topology::Graph;
+use kiddo::{ImmutableKdTree, SquaredEuclidean};
+
+/// Sizes of the network that are free to choose.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Architecture {
+    /// `m`.
+    pub embedding: usize,
+    /// `k`.
+    pub basis: usize,
+    /// `L`.
+    pub layers: usize,
+    /// `C`.
+    pub heads: usize,
+    /// `F`.
+    pub features: usize,
+}
+
+impl Default for Architecture {
+    fn default() -> Self {
+        Self { embedding: 32, basis: 64, layers: 2, heads: 4, features: 64 }
+    }
+}
+
+/// Hidden layers of Φ.
+const EMBEDDING: [usize; 2] = [128, 64];
+/// Hidden layer of the vertex-level MLP.
+const VERTEX: usize = 64;
+/// Skin weights per cloth vertex that training may change.
+const SLOTS: usize = 8;
+/// Least standard deviation of a pose number: a joint that hardly moved in training must not amplify.
+const LEAST_STD: f32 = 0.05;
+
+/// The untrained model for a dataset; means and deviations from the training samples alone.
+pub fn initial(setup: &Setup, train: &[&Sample], architecture: Architecture, seed: u64) -> Result<HostModel> {
+    let (n, joints) = (setup.template.len() / 3, setup.description.joints.len());
+    let Architecture { embedding, basis, layers, heads, features } = architecture;
+    if heads == 0 || features % heads != 0 || layers == 0 || embedding == 0 || basis == 0 {
+        return Err(Error::Training(format!(
+            "heads must divide features and all sizes be positive, found {architecture:?}"
+        )));
+    }
+    let mut rng = fastrand::Rng::with_seed(seed);
+    let graph = Graph::new(n, &setup.triangles);
+    let nearest = nearest(&setup.body, &setup.template)?;
+    let frames = frames(setup, train)?;
+    let inputs = |l: usize| if l == 0 { 3 } else { features };
+    Ok(HostModel {
+        sizes: Sizes { vertices: n, joints, embedding, basis, features, heads },
+        reference: reference(setup, &graph, &nearest, &frames),
+        rig: standardised(setup, &frames)?,
+        skin: trainable_skin(&graph, &nearest, &setup.body_weights),
+        triangles: setup.triangles.clone(),
+        graph,
+        rest: setup.template.clone(),
+        embedding: mlp(&[12 * joints, EMBEDDING[0], EMBEDDING[1], embedding], &mut rng),
+        skeleton: small(n * 3 * embedding, &mut rng),
+        layers: (0..layers).map(|l| layer(inputs(l), features, &mut rng)).collect(),
+        vertex: mlp(&[features, VERTEX, basis], &mut rng),
+        mesh: small(n * 3 * basis, &mut rng),
+        surface: Some(setup.surface.clone()).filter(|surface| !surface.vertex.is_empty()),
+        training: None,
+    })
+}
+
+/// Index of the body vertex nearest to each cloth vertex.
+fn nearest(body: &[f32], cloth: &[f32]) -> Result<Vec<usize>> {
+    let tree: ImmutableKdTree<f32, 3> = ImmutableKdTree::new_from_slice(body.as_chunks::<3>().0)
+        .map_err(|error| Error::Training(format!("body vertices: {error}")))?;
+    let query = |vertex: &[f32; 3]| tree.query(vertex).nearest_one::<SquaredEuclidean<f32>>().execute().item as usize;
+    Ok(cloth.as_chunks::<3>().0.iter().map(query).collect())
+}
+
+fn rig(setup: &Setup) -> Result<Rig> {
+    let description = &setup.description;
+    let transform = |numbers: &Vec<f32>| <[f32; 12]>::try_from(numbers.as_slice()).ok();
+    let inverse_bind: Option<Vec<_>> = description.inverse_bind.iter().map(transform).collect();
+    let joints = description.joints.len();
+    let inverse_bind = inverse_bind.filter(|list| list.len() == joints && description.root < joints);
+    let wrong = || Error::Dataset(format!("wanted {joints} inverse binds of 12 numbers and a root among the joints"));
+    Ok(Rig {
+        frame: Frame::HipYaw,
+        root: description.root,
+        joints: description.joints.clone(),
+        inverse_bind: inverse_bind.ok_or_else(wrong)?,
+        mean: vec![0.0; 12 * joints],
+        std: vec![1.0; 12 * joints],
+    })
+}
+
+/// Body frame of every sample; the pose vectors are not yet standardised.
+fn frames(setup: &Setup, samples: &[&Sample]) -> Result<Vec<BodyFrame>> {
+    let rig = rig(setup)?;
+    let frame = |sample: &&Sample| {
+        let mut frame = BodyFrame::new(rig.joints.len());
+        rig.body_frame(&sample.joints, &mut frame)?;
+        Ok(frame)
+    };
+    samples.iter().map(frame).collect()
+}
+
+fn standardised(setup: &Setup, frames: &[BodyFrame]) -> Result<Rig> {
+    let mut rig = rig(setup)?;
+    for i in 0..rig.mean.len() {
+        let (mean, std) = moments(frames.iter().map(|frame| f64::from(frame.vector[i])));
+        rig.mean[i] = mean;
+        rig.std[i] = std.max(LEAST_STD);
+    }
+    Ok(rig)
+}
+
+fn moments(values: impl Iterator<Item = f64> + Clone) -> (f32, f32) {
+    let count = values.clone().count().max(1) as f64;
+    let mean = values.clone().sum::<f64>() / count;
+    let variance = values.map(|value| (value - mean) * (value - mean)).sum::<f64>() / count;
+    (mean as f32, variance.sqrt() as f32)
+}
+
+fn reference(
+    setup: &Setup,
+    graph: &Graph<Vec<u32>>,
+    nearest: &[usize],
+    frames: &[BodyFrame],
+) -> Reference<Vec<f32>, Vec<u32>> {
+    let rest: Vec<f32> = nearest.iter().flat_map(|i| setup.body[3 * i..3 * i + 3].iter().copied()).collect();
+    let rows: Vec<_> = nearest.iter().map(|i| setup.body_weights[*i].clone()).collect();
+    let skin = rows_to_skin(&rows);
+    let mut values = [Vec::new(), Vec::new(), Vec::new()];
+    let mut posed = vec![0.0; rest.len()];
+    for frame in frames {
+        skin::skin(Level::new(), &rest, &skin.joints, &skin.weights, &frame.transforms, Space::Body, &mut posed);
+        for position in posed.as_chunks::<3>().0 {
+            (0..3).for_each(|c| values[c].push(f64::from(position[c])));
+        }
+    }
+    let moments: [(f32, f32); 3] = std::array::from_fn(|c| moments(values[c].iter().copied()));
+    let length = |i: usize, j: usize| -> f32 {
+        (0..3).map(|c| (setup.template[3 * i + c] - setup.template[3 * j + c]).powi(2)).sum::<f32>().sqrt()
+    };
+    let lengths = (0..nearest.len()).flat_map(|i| graph.of(i).iter().map(move |j| length(i, *j as usize)));
+    let total: f32 = lengths.sum();
+    Reference {
+        mean: moments.map(|moments| moments.0),
+        std: moments.map(|moments| moments.1.max(1e-3)),
+        edge_scale: total / graph.neighbours.len().max(1) as f32,
+        rest,
+        skin,
+    }
+}
+
+fn rows_to_skin(rows: &[SkinWeights]) -> Skin<Vec<f32>, Vec<u32>> {
+    let width = rows.iter().map(Vec::len).max().unwrap_or(0).max(1);
+    let mut skin = Skin { joints: vec![0; rows.len() * width], weights: vec![0.0; rows.len() * width], width };
+    for (i, row) in rows.iter().enumerate() {
+        for (slot, (joint, weight)) in row.iter().enumerate() {
+            skin.joints[i * width + slot] = *joint as u32;
+            skin.weights[i * width + slot] = *weight as f32;
+        }
+    }
+    skin
+}
+
+/// `W_C^I` with room to learn: each vertex also gets, at weight 0, the joints that matter to the cloth around it.
+fn trainable_skin(
+    graph: &Graph<Vec<u32>>,
+    nearest: &[usize],
+    body_weights: &[SkinWeights],
+) -> Skin<Vec<f32>, Vec<u32>> {
+    let own = |i: usize| &body_weights[nearest[i]];
+    let row = |i: usize| {
+        let mut row = own(i).clone();
+        let mut around = std::collections::BTreeMap::new();
+        for j in graph.of(i).iter().flat_map(|j| graph.of(*j as usize)) {
+            own(*j as usize).iter().for_each(|(joint, weight)| *around.entry(*joint).or_insert(0.0) += weight);
+        }
+        around.retain(|joint, _| !row.iter().any(|(own, _)| own == joint));
+        let mut around: Vec<(usize, f64)> = around.into_iter().collect();
+        around.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+        let free = SLOTS.saturating_sub(row.len());
+        row.extend(around.into_iter().take(free).map(|(joint, _)| (joint, 0.0)));
+        row
+    };
+    rows_to_skin(&(0..nearest.len()).map(row).collect::<Vec<_>>())
+}
+
+/// Residual matrices start near nothing, so that training starts from plain skinning.
+fn small(length: usize, rng: &mut fastrand::Rng) -> Vec<f32> {
+    (0..length).map(|_| (rng.f32() - 0.5) * 2e-3).collect()
+}
+
+/// PyTorch's default: uniform in ±1/√inputs.
+fn linear(inputs: usize, outputs: usize, rng: &mut fastrand::Rng) -> Linear<Vec<f32>> {
+    let bound = 1.0 / (inputs as f32).sqrt();
+    let mut uniform = |length: usize| (0..length).map(|_| (rng.f32() * 2.0 - 1.0) * bound).collect();
+    Linear { weight: uniform(inputs * outputs), bias: uniform(outputs), inputs, outputs }
+}
+
+fn mlp(sizes: &[usize], rng: &mut fastrand::Rng) -> Vec<Linear<Vec<f32>>> {
+    sizes.windows(2).map(|pair| linear(pair[0], pair[1], rng)).collect()
+}
+
+fn layer(inputs: usize, features: usize, rng: &mut fastrand::Rng) -> Layer<Vec<f32>> {
+    Layer {
+        project: linear(inputs, 4 * features, rng),
+        edge: linear(6, features, rng).weight,
+        gate: linear(3 * features, 1, rng).weight,
+        norm_weight: vec![1.0; features],
+        norm_bias: vec![0.0; features],
+    }
+}
