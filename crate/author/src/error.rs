@@ -21,6 +21,9 @@ pub enum Error {
         /// What was wanted and what was found.
         reason: String,
     },
+    /// A character that lacks what was asked of it.
+    #[error("character: {0}")]
+    Character(String),
     /// A garment that cannot be used.
     #[error("garment: {0}")]
     Garment(String),

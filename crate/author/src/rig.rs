@@ -101,6 +101,16 @@ impl Character {
         self.body.positions.iter().zip(&self.weights).map(blend).collect()
     }
 
+    /// The clip of that name; the error names the clips there are.
+    pub fn clip(&self, name: &str) -> crate::Result<&Clip> {
+        let found = self.clips.iter().find(|clip| clip.name == name);
+        found.ok_or_else(|| {
+            let names: Vec<&str> = self.clips.iter().map(|clip| clip.name.as_str()).collect();
+            let names = if names.is_empty() { "no clip at all".to_string() } else { names.join(", ") };
+            crate::Error::Character(format!("wanted the clip {name:?}, found {names}"))
+        })
+    }
+
     /// Index of the joint of that name.
     pub fn joint(&self, name: &str) -> Option<usize> {
         self.joints.iter().position(|joint| joint.name == name)

@@ -1,0 +1,124 @@
+//! Animations sampled at a fixed rate: STEP, LINEAR (slerp for rotations), CUBICSPLINE (Hermite). glTF 2.0 §3.11, App. C.
+
+use super::Read;
+use super::file::File;
+use super::nodes::{Nodes, unit_rotation};
+use ::gltf::Animation;
+use ::gltf::accessor::Dimensions;
+use ::gltf::animation::{Channel, Interpolation, Property};
+use glam::{DAffine3, DVec3};
+
+/// Most poses one clip may be sampled to: an hour and more at 60 per second.
+const MOST_POSES: f64 = 300_000.0;
+
+/// One animated property of one node.
+struct Track {
+    node: usize,
+    property: Property,
+    interpolation: Interpolation,
+    /// Key times, seconds, not decreasing, at least one.
+    times: Vec<f64>,
+    /// Per key `width` numbers; three times as many (in-tangent, value, out-tangent) for a cubic spline.
+    values: Vec<f64>,
+}
+
+/// World transforms of all nodes at each frame, file units: [frames][nodes]. Frames stand `1 / rate` seconds apart, from
+/// the first key to the last. `None` when no channel moves a node that `moves` marks.
+pub(super) fn sample(
+    file: &File,
+    nodes: &Nodes,
+    animation: &Animation,
+    moves: &[bool],
+    rate: f64,
+) -> Read<Option<Vec<Vec<DAffine3>>>> {
+    let channels = animation.channels().filter(|channel| moves[channel.target().node().index()]);
+    let channels = channels.filter(|channel| channel.target().property() != Property::MorphTargetWeights);
+    let tracks: Vec<Track> = channels.map(|channel| Track::read(file, &channel)).collect::<Read<_>>()?;
+    if tracks.is_empty() {
+        return Ok(None);
+    }
+    let start = tracks.iter().fold(f64::INFINITY, |time, track| time.min(track.times[0]));
+    let end = tracks.iter().fold(start, |time, track| time.max(track.times[track.times.len() - 1]));
+    // The small share of a frame forgives keys stored as f32, which end a hair before the last frame.
+    let last = ((end - start) * rate + 1e-3).floor();
+    if last >= MOST_POSES {
+        return Err(format!("{} s at {rate} poses per second are more than {MOST_POSES} poses", end - start));
+    }
+    let frames = (0..=last as usize).map(|frame| {
+        let (mut local, mut matrices) = (nodes.local.clone(), nodes.rest.clone());
+        for track in &tracks {
+            let value = track.at(start + frame as f64 / rate);
+            let xyz = DVec3::new(value[0], value[1], value[2]);
+            match track.property {
+                Property::Translation => local[track.node].translation = xyz,
+                Property::Scale => local[track.node].scale = xyz,
+                _ => local[track.node].rotation = unit_rotation(value),
+            }
+            matrices[track.node] = local[track.node].affine();
+        }
+        nodes.worlds(&matrices)
+    });
+    Ok(Some(frames.collect()))
+}
+
+impl Track {
+    fn read(file: &File, channel: &Channel) -> Read<Track> {
+        let (sampler, property) = (channel.sampler(), channel.target().property());
+        let shape = if property == Property::Rotation { Dimensions::Vec4 } else { Dimensions::Vec3 };
+        let times = file.components(&sampler.input(), Dimensions::Scalar, "key times")?;
+        let values = file.components(&sampler.output(), shape, "key values")?;
+        let interpolation = sampler.interpolation();
+        let per_key = if interpolation == Interpolation::CubicSpline { 3 } else { 1 };
+        let (keys, found) = (times.len(), values.len() / shape.multiplicity());
+        if keys == 0 || found != keys * per_key {
+            return Err(format!("{keys} key times want {} key values, found {found}", keys * per_key));
+        }
+        if times.windows(2).any(|pair| pair[1] < pair[0]) {
+            return Err("key times must not decrease".to_string());
+        }
+        let node = channel.target().node().index();
+        Ok(Track { node, property, interpolation, times, values })
+    }
+
+    /// The value at a time, held before the first key and after the last; three or four numbers used.
+    fn at(&self, time: f64) -> [f64; 4] {
+        let next = self.times.partition_point(|&key| key <= time);
+        let key = next.saturating_sub(1);
+        let next = next.clamp(key, self.times.len() - 1);
+        let span = self.times[next] - self.times[key];
+        if span <= 0.0 || time <= self.times[key] {
+            return self.value(key);
+        }
+        let share = (time - self.times[key]) / span;
+        match self.interpolation {
+            Interpolation::Step => self.value(key),
+            Interpolation::Linear if self.property == Property::Rotation => {
+                unit_rotation(self.value(key)).slerp(unit_rotation(self.value(next)), share).to_array()
+            }
+            Interpolation::Linear => {
+                let (from, to) = (self.value(key), self.value(next));
+                std::array::from_fn(|i| from[i] + (to[i] - from[i]) * share)
+            }
+            Interpolation::CubicSpline => {
+                let (from, to, t) = (self.value(key), self.value(next), share);
+                let (leaving, arriving) = (self.element(3 * key + 2), self.element(3 * next));
+                let (t2, t3) = (t * t, t * t * t);
+                std::array::from_fn(|i| {
+                    (2.0 * t3 - 3.0 * t2 + 1.0) * from[i]
+                        + span * (t3 - 2.0 * t2 + t) * leaving[i]
+                        + (3.0 * t2 - 2.0 * t3) * to[i]
+                        + span * (t3 - t2) * arriving[i]
+                })
+            }
+        }
+    }
+
+    fn value(&self, key: usize) -> [f64; 4] {
+        self.element(if self.interpolation == Interpolation::CubicSpline { 3 * key + 1 } else { key })
+    }
+
+    fn element(&self, index: usize) -> [f64; 4] {
+        let width = if self.property == Property::Rotation { 4 } else { 3 };
+        std::array::from_fn(|i| if i < width { self.values[index * width + i] } else { 0.0 })
+    }
+}

@@ -1,0 +1,147 @@
+//! The triangles of the mesh nodes, as the file has them: vertices split at seams, skin weights per vertex.
+//! glTF 2.0 §3.7.2 (primitives), §3.7.3.3 (skinned attributes). Morph targets are left at their base.
+
+use super::Read;
+use super::colour::Painter;
+use super::file::File;
+use crate::rig::SkinWeights;
+use ::gltf::accessor::Dimensions;
+use ::gltf::mesh::Mode;
+use ::gltf::{Primitive, Semantic};
+use glam::{DVec2, DVec3};
+
+/// One primitive of one mesh node, in the mesh's own space.
+pub(super) struct Part {
+    /// The node that holds the mesh.
+    pub node: usize,
+    /// The skin that node uses.
+    pub skin: Option<usize>,
+    /// [v] file units.
+    pub positions: Vec<DVec3>,
+    /// [v], or empty.
+    pub uv: Vec<DVec2>,
+    /// [v], joints as the skin numbers them; empty lists where a vertex has no weight; empty without a skin.
+    pub weights: Vec<SkinWeights>,
+    /// Indices of the vertices above.
+    pub triangles: Vec<[u32; 3]>,
+    /// Linear RGB per triangle.
+    pub colour: Vec<[f32; 3]>,
+}
+
+/// Every triangle primitive of every mesh node, in the order of the file.
+pub(super) fn read(file: &File) -> Read<Vec<Part>> {
+    let mut painter = Painter::new(file);
+    let mut parts = Vec::new();
+    for node in file.document.nodes() {
+        for primitive in node.mesh().iter().flat_map(|mesh| mesh.primitives()) {
+            let place = |reason| format!("mesh node {} ({}): {reason}", node.index(), node.name().unwrap_or("unnamed"));
+            let skin = node.skin().map(|skin| (skin.index(), skin.joints().count()));
+            if let Some(part) = read_primitive(file, &primitive, node.index(), skin, &mut painter).map_err(place)? {
+                parts.push(part);
+            }
+        }
+    }
+    Ok(parts)
+}
+
+/// `skin`: index of the skin and how many joints it has. `None` for points and lines, and without positions.
+fn read_primitive(
+    file: &File,
+    primitive: &Primitive,
+    node: usize,
+    skin: Option<(usize, usize)>,
+    painter: &mut Painter,
+) -> Read<Option<Part>> {
+    let Some(accessor) = primitive.get(&Semantic::Positions) else { return Ok(None) };
+    let positions = file.components(&accessor, Dimensions::Vec3, "positions")?;
+    let positions: Vec<DVec3> = positions.chunks_exact(3).map(DVec3::from_slice).collect();
+    let triangles = triangles(file, primitive, positions.len())?;
+    if triangles.is_empty() {
+        return Ok(None);
+    }
+    let material = primitive.material().pbr_metallic_roughness();
+    let set = material.base_color_texture().map_or(0, |texture| texture.tex_coord());
+    let uv = match primitive.get(&Semantic::TexCoords(set)) {
+        Some(accessor) => file.components(&accessor, Dimensions::Vec2, "texture coordinates")?,
+        None => Vec::new(),
+    };
+    let uv: Vec<DVec2> = uv.chunks_exact(2).map(DVec2::from_slice).collect();
+    check_count("texture coordinates", uv.len(), positions.len(), uv.is_empty())?;
+    let weights = match skin {
+        Some((_, joints)) => skin_weights(file, primitive, positions.len(), joints)?,
+        None => Vec::new(),
+    };
+    let colour = painter.paint(&material, &uv, &triangles);
+    Ok(Some(Part { node, skin: skin.map(|(index, _)| index), positions, uv, weights, triangles, colour }))
+}
+
+fn check_count(what: &str, found: usize, wanted: usize, absent: bool) -> Read<()> {
+    if absent || found == wanted {
+        return Ok(());
+    }
+    Err(format!("{what}: wanted one per vertex ({wanted}), found {found}"))
+}
+
+/// Lists, strips and fans as separate triangles; vertices in order where there are no indices. A strip's odd triangles turn.
+fn triangles(file: &File, primitive: &Primitive, vertices: usize) -> Read<Vec<[u32; 3]>> {
+    let corner: Vec<u32> = match primitive.indices() {
+        Some(accessor) => {
+            let indices = file.components(&accessor, Dimensions::Scalar, "indices")?;
+            if let Some(wrong) = indices.iter().find(|&&index| !(0.0..vertices as f64).contains(&index)) {
+                return Err(format!("indices: {wrong} where there are {vertices} vertices"));
+            }
+            indices.iter().map(|&index| index as u32).collect()
+        }
+        None => (0..vertices as u32).collect(),
+    };
+    Ok(match primitive.mode() {
+        Mode::Triangles => corner.as_chunks::<3>().0.to_vec(),
+        Mode::TriangleStrip => {
+            let turn = |(at, three): (usize, &[u32])| [three[0], three[1 + at % 2], three[2 - at % 2]];
+            corner.windows(3).enumerate().map(turn).collect()
+        }
+        Mode::TriangleFan => {
+            let fan = corner.get(1..).unwrap_or(&[]).windows(2);
+            fan.map(|two| [two[0], two[1], corner[0]]).collect()
+        }
+        _ => Vec::new(),
+    })
+}
+
+/// All sets (JOINTS_0/WEIGHTS_0, JOINTS_1/WEIGHTS_1, …) together: positive, sum one, strongest first.
+fn skin_weights(file: &File, primitive: &Primitive, vertices: usize, joints: usize) -> Read<Vec<SkinWeights>> {
+    let mut weights: Vec<SkinWeights> = vec![Vec::new(); vertices];
+    for set in 0.. {
+        let accessors = (primitive.get(&Semantic::Joints(set)), primitive.get(&Semantic::Weights(set)));
+        let (Some(joint), Some(weight)) = accessors else { break };
+        let joint = file.components(&joint, Dimensions::Vec4, "joints")?;
+        let weight = file.components(&weight, Dimensions::Vec4, "weights")?;
+        check_count("joints", joint.len() / 4, vertices, false)?;
+        check_count("weights", weight.len() / 4, vertices, false)?;
+        for (at, (&joint, &weight)) in joint.iter().zip(&weight).enumerate() {
+            // Unused slots hold weight zero, and in some files a joint that does not exist.
+            if weight <= 0.0 {
+                continue;
+            }
+            if joint >= joints as f64 {
+                return Err(format!("vertex {} names joint {joint} of a skin with {joints} joints", at / 4));
+            }
+            let (list, joint) = (&mut weights[at / 4], joint as usize);
+            match list.iter_mut().find(|entry| entry.0 == joint) {
+                Some(entry) => entry.1 += weight,
+                None => list.push((joint, weight)),
+            }
+        }
+    }
+    weights.iter_mut().for_each(normalise);
+    Ok(weights)
+}
+
+fn normalise(weights: &mut SkinWeights) {
+    let total = |weights: &SkinWeights| weights.iter().map(|entry| entry.1).sum::<f64>();
+    let least = total(weights) * 1e-6;
+    weights.retain(|entry| entry.1 > least);
+    let sum = total(weights);
+    weights.iter_mut().for_each(|entry| entry.1 /= sum);
+    weights.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+}

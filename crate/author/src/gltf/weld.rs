@@ -1,0 +1,113 @@
+//! One vertex per position: vertices split for drawing (seams in normals or UVs) become one for simulation.
+
+use crate::rig::{Mesh, SkinWeights, Surface};
+use glam::{DVec2, DVec3, I64Vec3};
+use std::collections::HashMap;
+
+/// Vertices closer than this share of the largest extent are one: f32 rounding moves the copies of a vertex by 1e-7.
+const SAME_POSITION: f64 = 1e-6;
+/// Copies of a vertex whose weights differ by more (sum of differences, at most 2) stay apart: closed lips, touching fingers.
+const SAME_WEIGHTS: f64 = 0.25;
+
+/// Triangles with split vertices: what parts of a file are gathered into.
+#[derive(Default)]
+pub(super) struct Soup {
+    /// [v] metres.
+    pub positions: Vec<DVec3>,
+    /// [v]; empty lists where there are no weights.
+    pub weights: Vec<SkinWeights>,
+    /// [v], or fewer when a part has none.
+    pub uv: Vec<DVec2>,
+    /// Three vertices per triangle.
+    pub triangles: Vec<[u32; 3]>,
+    /// Linear RGB per triangle.
+    pub colour: Vec<[f32; 3]>,
+}
+
+/// A welded mesh, its weights, and the surface that draws it.
+pub(super) struct Welded {
+    /// Degenerate triangles are left out.
+    pub mesh: Mesh,
+    /// [mesh vertices]
+    pub weights: Vec<SkinWeights>,
+    /// All triangles, the degenerate too.
+    pub surface: Surface,
+}
+
+impl Soup {
+    /// Adds a part; indices are counted from its first vertex. Vertices that no triangle uses are dropped.
+    pub fn add(&mut self, part: Soup, turn: bool) {
+        let mut place: Vec<Option<u32>> = vec![None; part.positions.len()];
+        for triangle in &part.triangles {
+            let mut corners = triangle.map(|corner| {
+                let old = corner as usize;
+                *place[old].get_or_insert_with(|| {
+                    self.positions.push(part.positions[old]);
+                    self.weights.push(part.weights.get(old).cloned().unwrap_or_default());
+                    self.uv.extend(part.uv.get(old));
+                    self.positions.len() as u32 - 1
+                })
+            });
+            if turn {
+                corners.swap(1, 2);
+            }
+            self.triangles.push(corners);
+        }
+        self.colour.extend(part.colour);
+    }
+
+    /// Largest side of the bounding box, metres.
+    pub fn extent(&self) -> f64 {
+        let infinite = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        let (low, high) = self.positions.iter().fold(infinite, |(low, high), &p| (low.min(p), high.max(p)));
+        if self.positions.is_empty() { 0.0 } else { (high - low).max_element() }
+    }
+
+    /// The first copy of each vertex gives the welded vertex its position and weights.
+    pub fn weld(self) -> Welded {
+        let cell = (self.extent() * SAME_POSITION).max(f64::MIN_POSITIVE);
+        let mut kept: Vec<usize> = Vec::new();
+        let mut grid: HashMap<I64Vec3, Vec<u32>> = HashMap::new();
+        let mut vertex = Vec::with_capacity(self.positions.len());
+        for (at, &position) in self.positions.iter().enumerate() {
+            let centre = (position / cell).floor().as_i64vec3();
+            let near =
+                (0..27).filter_map(|i| grid.get(&centre.saturating_add(I64Vec3::new(i % 3, i / 3 % 3, i / 9) - 1)));
+            let same = near.flatten().copied().find(|&candidate| {
+                let other = kept[candidate as usize];
+                self.positions[other].distance(position) <= cell
+                    && difference(&self.weights[other], &self.weights[at]) <= SAME_WEIGHTS
+            });
+            vertex.push(same.unwrap_or_else(|| {
+                let new = kept.len() as u32;
+                kept.push(at);
+                grid.entry(centre).or_default().push(new);
+                new
+            }));
+        }
+        let positions: Vec<DVec3> = kept.iter().map(|&at| self.positions[at]).collect();
+        let mut triangles: Vec<[u32; 3]> =
+            self.triangles.iter().map(|t| t.map(|corner| vertex[corner as usize])).collect();
+        triangles.retain(|&triangle| !degenerate(triangle, &positions, cell));
+        let uv = if self.uv.len() == self.positions.len() { self.uv } else { Vec::new() };
+        Welded {
+            mesh: Mesh { positions, triangles },
+            weights: kept.iter().map(|&at| self.weights[at].clone()).collect(),
+            surface: Surface { vertex, uv, triangles: self.triangles, colour: self.colour },
+        }
+    }
+}
+
+/// Two corners are one, or all three lie on a line to within the welding distance's square.
+fn degenerate([a, b, c]: [u32; 3], positions: &[DVec3], cell: f64) -> bool {
+    let [p, q, r] = [a, b, c].map(|corner| positions[corner as usize]);
+    a == b || b == c || c == a || (q - p).cross(r - p).length() <= cell * cell
+}
+
+/// Sum of absolute differences of two lists of weights, 0 to 2.
+fn difference(a: &SkinWeights, b: &SkinWeights) -> f64 {
+    let weight = |list: &SkinWeights, joint| list.iter().find(|entry| entry.0 == joint).map_or(0.0, |entry| entry.1);
+    let of_a: f64 = a.iter().map(|&(joint, value)| (value - weight(b, joint)).abs()).sum();
+    let only_b: f64 = b.iter().filter(|entry| weight(a, entry.0) == 0.0).map(|entry| entry.1).sum();
+    of_a + only_b
+}
