@@ -4,6 +4,7 @@ pub mod dataset;
 mod error;
 pub mod gltf;
 pub mod rig;
+pub mod simulate;
 pub mod train;
 
 pub use error::{Error, Result};
