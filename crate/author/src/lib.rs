@@ -2,5 +2,6 @@
 
 mod error;
 pub mod rig;
+pub mod simulate;
 
 pub use error::{Error, Result};
