@@ -1,5 +1,6 @@
 //! The part of the body a garment can touch: its triangles, adjacency and skin, without a pose.
-//! Far triangles (hands below a T-shirt) are left out: they cost time, and a thin part far away only pinches.
+//! Far joints (hands below a T-shirt) are left out whole: they cost time, and a thin part far away only pinches.
+//! Leaving out single far triangles was tried and cut holes into limbs that later met the cloth.
 
 use std::collections::BTreeMap;
 
@@ -13,7 +14,7 @@ use super::posed::PosedBody;
 use crate::rig::{Character, Mesh, SkinWeights};
 use crate::{Error, Result};
 
-/// Body triangles within reach of the garment, in the canonical pose.
+/// Body triangles of the joints within reach of the garment, in the canonical pose.
 #[derive(Clone)]
 pub(super) struct Collider {
     /// Canonical positions of the vertices used, metres.
@@ -29,7 +30,7 @@ pub(super) struct Collider {
 }
 
 impl Collider {
-    /// Keeps the body triangles with a corner within `reach` metres of a garment vertex, both canonical.
+    /// Keeps the triangles of every joint that moves a body vertex within `reach` metres of the garment, canonical.
     pub fn new(character: &Character, garment: &Mesh, reach: f64) -> Result<Self> {
         let body = &character.body.positions;
         check(character)?;
@@ -39,13 +40,17 @@ impl Collider {
         let distance: Vec<f64> =
             body.iter().map(|p| tree.query(&p.to_array()).nearest_one::<SquaredEuclidean<f64>>().execute().distance.sqrt()).collect();
         near_enough(body, &distance)?;
+        let mut near = vec![false; character.joints.len()];
+        for (weights, distance) in character.weights.iter().zip(&distance) {
+            near[strongest(weights)] |= *distance < reach;
+        }
         let mut used = BTreeMap::new();
         let mut faces = Vec::new();
         for triangle in &character.body.triangles {
             let [a, b, c] = triangle.map(|i| body[i as usize]);
             let area = (b - a).cross(c - a).length();
-            let near = triangle.iter().any(|&i| distance[i as usize] < reach);
-            if near && area > 1e-8 * (b - a).length_squared().max((c - a).length_squared()) {
+            let kept = triangle.iter().any(|&i| near[strongest(&character.weights[i as usize])]);
+            if kept && area > 1e-8 * (b - a).length_squared().max((c - a).length_squared()) {
                 faces.push(triangle.map(|i| {
                     let next = used.len() as u32;
                     *used.entry(i as usize).or_insert(next)
@@ -85,6 +90,12 @@ impl Collider {
         }
         sum.into_iter().collect()
     }
+}
+
+/// The joint that moves a vertex most, the first of equals.
+fn strongest(weights: &SkinWeights) -> usize {
+    let stronger = |best: (usize, f64), &next: &(usize, f64)| if next.1 > best.1 { next } else { best };
+    weights.iter().fold((0, 0.0), stronger).0
 }
 
 /// `Σ_j w_j M_j`.

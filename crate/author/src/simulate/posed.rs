@@ -87,6 +87,9 @@ impl<'a> PosedBody<'a> {
         }
         let normal = self.pseudo_normal(face, barycentric);
         if (point - foot).dot(normal) < 0.0 {
+            if self.on_border(face, barycentric) {
+                return None;
+            }
             let own = tracked.is_none_or(|old| self.face_normals[old as usize].dot(normal) > 0.0);
             let limit = if own { DEPTH } else { DEPTH_OPPOSED };
             if squared > limit * limit {
@@ -94,6 +97,11 @@ impl<'a> PosedBody<'a> {
             }
         }
         Some((squared, Spot { point: foot, barycentric, normal }))
+    }
+
+    /// Whether the closest point lies on the border of an open body: nothing is behind that.
+    fn on_border(&self, face: u32, barycentric: [f64; 3]) -> bool {
+        (0..3).any(|k| barycentric[k] == 0.0 && self.collider.neighbours[face as usize][(k + 1) % 3] == face)
     }
 
     /// Face normal inside a face, mean of two on an edge, angle-weighted mean at a corner; unit length.

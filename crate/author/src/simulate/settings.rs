@@ -9,7 +9,7 @@ pub struct Settings {
     pub thickness: f64,
     /// Contact stiffness per vertex mass, 1/s².
     pub contact_stiffness: f64,
-    /// Body triangles further than this from the garment in the canonical pose are ignored, metres.
+    /// Joints whose part of the body is further than this from the garment in the canonical pose are ignored, metres.
     pub reach: f64,
     /// Share of the garment's own dihedral angles kept as rest angles, 0 (flat cloth) to 1 (keeps its form).
     pub shape: f64,
