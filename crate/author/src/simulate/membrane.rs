@@ -1,0 +1,119 @@
+//! Saint Venant–Kirchhoff membrane: `A ψ(F)`, `ψ = μ|G|² + λ/2 tr(G)²`, `G = (FᵀF - I)/2`. simulation.md §2.2.
+//! The Hessian is `BᵀCB` plus the geometric part with the stress clamped to tension, so it is never indefinite.
+
+use glam::{DMat3, DVec2, DVec3};
+
+use super::matrix::outer;
+
+/// A membrane triangle at rest.
+#[derive(Clone, Debug)]
+pub(super) struct Triangle {
+    /// Cloth vertices.
+    pub vertices: [usize; 3],
+    /// Gradients of the three shape functions in rest coordinates, 1/m.
+    pub gradients: [DVec2; 3],
+    /// Rest area, m².
+    pub area: f64,
+}
+
+/// Deformation gradient columns and second Piola stress of a triangle.
+struct Strain {
+    columns: [DVec3; 2],
+    /// s11, s22, s12 in N/m.
+    stress: [f64; 3],
+    energy: f64,
+}
+
+impl Triangle {
+    /// From the rest positions of its corners; `None` when the triangle has no area to speak of.
+    pub fn new(vertices: [usize; 3], [a, b, c]: [DVec3; 3]) -> Option<Self> {
+        let (e1, e2) = (b - a, c - a);
+        let normal = e1.cross(e2);
+        let area = 0.5 * normal.length();
+        let longest = e1.length_squared().max(e2.length_squared()).max((c - b).length_squared());
+        if !area.is_finite() || area <= 1e-4 * longest {
+            return None;
+        }
+        let u = e1.normalize();
+        let v = normal.normalize().cross(u);
+        let (p, q) = (DVec2::new(e1.dot(u), 0.0), DVec2::new(e2.dot(u), e2.dot(v)));
+        let determinant = p.x * q.y;
+        let g1 = DVec2::new(q.y, -q.x) / determinant;
+        let g2 = DVec2::new(-p.y, p.x) / determinant;
+        Some(Self { vertices, gradients: [-(g1 + g2), g1, g2], area })
+    }
+
+    /// Columns of `F = Σ x_a ⊗ g_a`.
+    pub fn deformation(&self, x: &[DVec3]) -> [DVec3; 2] {
+        let [a, b, c] = self.vertices.map(|i| x[i]);
+        let [_, g1, g2] = self.gradients;
+        let (d1, d2) = (b - a, c - a);
+        [d1 * g1.x + d2 * g2.x, d1 * g1.y + d2 * g2.y]
+    }
+
+    /// Singular values of `F`, largest first: the principal stretches.
+    pub fn stretches(&self, x: &[DVec3]) -> [f64; 2] {
+        let [f1, f2] = self.deformation(x);
+        let (a, b, c) = (f1.length_squared(), f2.length_squared(), f1.dot(f2));
+        let (mean, radius) = (0.5 * (a + b), (0.25 * (a - b) * (a - b) + c * c).sqrt());
+        [(mean + radius).sqrt(), (mean - radius).max(0.0).sqrt()]
+    }
+
+    fn strain(&self, (mu, lambda): (f64, f64), x: &[DVec3]) -> Strain {
+        let columns @ [f1, f2] = self.deformation(x);
+        let (g11, g22, g12) =
+            (0.5 * (f1.length_squared() - 1.0), 0.5 * (f2.length_squared() - 1.0), 0.5 * f1.dot(f2));
+        let trace = g11 + g22;
+        let energy = self.area * (mu * (g11 * g11 + g22 * g22 + 2.0 * g12 * g12) + 0.5 * lambda * trace * trace);
+        let stress = [2.0 * mu * g11 + lambda * trace, 2.0 * mu * g22 + lambda * trace, 2.0 * mu * g12];
+        Strain { columns, stress, energy }
+    }
+
+    /// Energy in joules.
+    pub fn energy(&self, lame: (f64, f64), x: &[DVec3]) -> f64 {
+        self.strain(lame, x).energy
+    }
+
+    /// Gradient per corner in newtons, and the Hessian through `block(a, b, H_ab)` for the pairs `a >= b`.
+    pub fn derivatives(
+        &self,
+        lame: (f64, f64),
+        x: &[DVec3],
+        mut block: impl FnMut(usize, usize, DMat3),
+    ) -> [DVec3; 3] {
+        let Strain { columns: [f1, f2], stress: [s11, s22, s12], .. } = self.strain(lame, x);
+        let (p1, p2) = ((f1 * s11 + f2 * s12) * self.area, (f1 * s12 + f2 * s22) * self.area);
+        let (mu, lambda) = lame;
+        let [c11, c22, c12] = tension([s11, s22, s12]);
+        let stiff = 2.0 * mu + lambda;
+        let g = self.gradients;
+        let b = g.map(|g| [f1 * g.x, f2 * g.y, f1 * g.y + f2 * g.x]);
+        for i in 0..3 {
+            for j in 0..=i {
+                let geometric = g[i].x * (c11 * g[j].x + c12 * g[j].y) + g[i].y * (c12 * g[j].x + c22 * g[j].y);
+                let c = [b[j][0] * stiff + b[j][1] * lambda, b[j][0] * lambda + b[j][1] * stiff, b[j][2] * mu];
+                let material = outer(b[i][0], c[0]) + outer(b[i][1], c[1]) + outer(b[i][2], c[2]);
+                block(i, j, (material + DMat3::from_diagonal(DVec3::splat(geometric))) * self.area);
+            }
+        }
+        g.map(|g| p1 * g.x + p2 * g.y)
+    }
+}
+
+/// The tensile part of a symmetric 2×2 stress (s11, s22, s12): negative eigenvalues set to zero.
+fn tension([s11, s22, s12]: [f64; 3]) -> [f64; 3] {
+    let mean = 0.5 * (s11 + s22);
+    let half = 0.5 * (s11 - s22);
+    let radius = (half * half + s12 * s12).sqrt();
+    let (high, low) = (mean + radius, mean - radius);
+    if low >= 0.0 {
+        return [s11, s22, s12];
+    }
+    if high <= 0.0 {
+        return [0.0; 3];
+    }
+    // Eigenvector of `high`: the better conditioned of the two rows.
+    let v = if half >= 0.0 { DVec2::new(half + radius, s12) } else { DVec2::new(s12, radius - half) };
+    let v = v.normalize_or(DVec2::X);
+    [high * v.x * v.x, high * v.y * v.y, high * v.x * v.y]
+}

@@ -1,0 +1,26 @@
+//! Quasi-static cloth: a garment draped on the canonical body, and brought from there to any pose.
+//! Implicit Newton on the true elastic energy, f64, fixed order of sums: the same pose gives the same bits.
+
+mod bending;
+mod cloth;
+mod collider;
+mod contact;
+mod material;
+mod matrix;
+mod membrane;
+mod newton;
+mod outcome;
+mod path;
+mod posed;
+mod settings;
+mod simulator;
+mod transport;
+
+#[cfg(test)]
+mod tests;
+
+pub use material::{GRAVITY, Material};
+pub use outcome::{Outcome, Status};
+pub use path::{body_frame, path, to_body_frame};
+pub use settings::Settings;
+pub use simulator::Simulator;

@@ -1,0 +1,280 @@
+//! Proximal Newton: `min Φ(x + δ) + Σ m_i |δ_i|² / 2h²`, one factorisation per iteration, `h` growing as steps succeed,
+//! so that the end is pure statics. Contacts are planes within an iteration and found anew for the next one.
+
+use glam::{DMat3, DVec3};
+
+use super::cloth::Cloth;
+use super::contact::{Contact, Pin};
+use super::material::GRAVITY;
+use super::matrix::{Address, Matrix, Pattern};
+use super::posed::PosedBody;
+use super::settings::Settings;
+use crate::Result;
+
+/// Longest move of a vertex in one iteration, metres.
+const LONGEST_MOVE: f64 = 0.03;
+/// A vertex further than this beyond the contact offset is not looked at, metres.
+const MARGIN: f64 = 0.015;
+/// Proximal time step at the start of a relaxation and at most, seconds; growth after a full Newton step.
+const FIRST_TIME_STEP: f64 = 0.05;
+const LONGEST_TIME_STEP: f64 = 20.0;
+const GROWTH: f64 = 1.6;
+/// Factor by which a contact that gave way too far is stiffened, and how often it may be.
+const STIFFENING: f64 = 3.0;
+const STIFFEST: f64 = 1e4;
+
+/// Hessian layout of a cloth: the pattern and where each element's blocks lie.
+pub(super) struct Layout {
+    pattern: Pattern,
+    triangles: Vec<[Address; 6]>,
+    hinges: Vec<[Address; 10]>,
+    diagonal: Vec<Address>,
+}
+
+/// Place of the pair `a >= b` in a packed lower triangle.
+fn packed(a: usize, b: usize) -> usize {
+    a * (a + 1) / 2 + b
+}
+
+impl Layout {
+    /// Analyses the cloth's coupling once.
+    pub fn new(cloth: &Cloth) -> Result<Self> {
+        let pattern = Pattern::new(cloth.masses.len(), cloth.cliques())?;
+        fn addresses<const P: usize>(pattern: &Pattern, vertices: &[usize]) -> [Address; P] {
+            let mut list = [pattern.address(0, 0); P];
+            for a in 0..vertices.len() {
+                for b in 0..=a {
+                    list[packed(a, b)] = pattern.address(vertices[a], vertices[b]);
+                }
+            }
+            list
+        }
+        let triangles = cloth.triangles.iter().map(|t| addresses(&pattern, &t.vertices)).collect();
+        let hinges = cloth.hinges.iter().map(|h| addresses(&pattern, &h.vertices)).collect();
+        let diagonal = (0..cloth.masses.len()).map(|i| pattern.address(i, i)).collect();
+        Ok(Self { pattern, triangles, hinges, diagonal })
+    }
+}
+
+/// The state of a cloth between two iterations.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Probe {
+    /// RMS static force per vertex, in mean vertex weights.
+    pub residual: f64,
+    /// Least signed distance, metres (infinite without contact).
+    pub least_distance: f64,
+}
+
+/// A cloth on its way to equilibrium.
+pub(super) struct Solver<'a> {
+    cloth: &'a Cloth,
+    layout: &'a Layout,
+    settings: &'a Settings,
+    matrix: Matrix<'a>,
+    /// Vertex positions, metres [n].
+    pub positions: Vec<DVec3>,
+    /// Friction anchors, metres [n].
+    pub anchors: Vec<DVec3>,
+    /// Last face each vertex was near.
+    pub tracked: Vec<Option<u32>>,
+    /// Contacts of the last iteration.
+    pub contacts: Vec<Option<Contact>>,
+    /// Vertices held in place.
+    pub pins: Vec<Pin>,
+    /// Whether contacts that give way are stiffened: at rest, not while the body moves.
+    pub stiffening: bool,
+    /// Iterations so far.
+    pub iterations: usize,
+    gradient: Vec<DVec3>,
+    /// Contact stiffness per mass, 1/s² [n].
+    stiffness: Vec<f64>,
+    /// Lower bound of the distance to the body [n].
+    clearance: Vec<f64>,
+}
+
+impl<'a> Solver<'a> {
+    /// Starts from `positions`, at rest, in friction contact without slip.
+    pub fn new(cloth: &'a Cloth, layout: &'a Layout, settings: &'a Settings, positions: Vec<DVec3>) -> Self {
+        let n = positions.len();
+        Self {
+            cloth,
+            layout,
+            settings,
+            matrix: Matrix::new(&layout.pattern),
+            anchors: positions.clone(),
+            positions,
+            tracked: vec![None; n],
+            contacts: vec![None; n],
+            pins: Vec::new(),
+            stiffening: false,
+            iterations: 0,
+            gradient: vec![DVec3::ZERO; n],
+            stiffness: vec![settings.contact_stiffness; n],
+            clearance: vec![0.0; n],
+        }
+    }
+
+    /// Forgets distances: to be called when the body or the positions were changed from outside.
+    pub fn moved(&mut self) {
+        self.clearance.fill(0.0);
+    }
+
+    /// Contacts, static forces and the Hessian for the proximal time step `h` seconds, against the posed body, if any.
+    pub fn probe(&mut self, body: Option<&PosedBody>, h: f64) -> Probe {
+        let least_distance = self.detect(body);
+        self.assemble(h);
+        let square: f64 = self.gradient.iter().map(|g| g.length_squared()).sum();
+        let residual = (square / self.positions.len() as f64).sqrt() / self.cloth.mean_weight();
+        Probe { residual, least_distance }
+    }
+
+    /// Takes the step that the last [`probe`](Self::probe) prepared; the share of the Newton step taken, 0 when the
+    /// matrix or the line search failed.
+    pub fn advance(&mut self, h: f64) -> f64 {
+        self.iterations += 1;
+        self.descend(h)
+    }
+
+    /// Iterates with growing time step until the residual is small and no vertex is inside the body.
+    pub fn relax(&mut self, body: Option<&PosedBody>, iterations: usize) -> Probe {
+        let mut h = FIRST_TIME_STEP;
+        self.stiffening = true;
+        for _ in 0..iterations {
+            let probe = self.probe(body, h);
+            if probe.residual < self.settings.residual && probe.least_distance > 0.0 {
+                return probe;
+            }
+            h = match self.advance(h) {
+                1.0 => (h * GROWTH).min(LONGEST_TIME_STEP),
+                share if share < 0.2 => (0.4 * h).max(1e-4),
+                _ => h,
+            };
+        }
+        self.probe(body, h)
+    }
+
+    /// Finds the contact planes; the least signed distance.
+    fn detect(&mut self, body: Option<&PosedBody>) -> f64 {
+        let mut least = f64::INFINITY;
+        let offset = self.settings.thickness;
+        let Some(body) = body else { return least };
+        for i in 0..self.positions.len() {
+            if self.clearance[i] > offset + MARGIN {
+                self.contacts[i] = None;
+                continue;
+            }
+            let x = self.positions[i];
+            let hit = body.closest(x, self.tracked[i], 2.0 * (offset + MARGIN).max(0.05));
+            self.clearance[i] = hit.map_or(offset + 2.0 * MARGIN, |hit| hit.distance.max(0.0));
+            self.contacts[i] = hit.filter(|hit| hit.distance < offset + MARGIN).map(|hit| {
+                least = least.min(hit.distance);
+                let limit = STIFFEST * self.settings.contact_stiffness;
+                if self.stiffening && hit.distance < 0.25 * offset && self.stiffness[i] < limit {
+                    self.stiffness[i] *= STIFFENING;
+                }
+                let stiffness = self.stiffness[i] * self.cloth.masses[i];
+                let force = stiffness * (offset - hit.distance).max(0.0);
+                Contact {
+                    normal: hit.normal,
+                    plane: hit.normal.dot(x) - hit.distance,
+                    offset,
+                    stiffness,
+                    grip: self.cloth.friction * force,
+                    anchor: self.anchors[i],
+                }
+            });
+            self.tracked[i] = hit.map(|hit| hit.face).or(self.tracked[i]);
+        }
+        least
+    }
+
+    /// Static gradient, and the Hessian of the proximal problem.
+    fn assemble(&mut self, h: f64) {
+        let Self { cloth, layout, matrix, positions: x, gradient, .. } = self;
+        matrix.clear();
+        gradient.fill(DVec3::ZERO);
+        for (triangle, addresses) in cloth.triangles.iter().zip(&layout.triangles) {
+            let v = triangle.vertices;
+            let forces = triangle.derivatives(cloth.lame, x, |a, b, block| {
+                let ordered = if v[a] < v[b] { block.transpose() } else { block };
+                matrix.add(addresses[packed(a, b)], ordered, a == b);
+            });
+            (0..3).for_each(|a| gradient[v[a]] += forces[a]);
+        }
+        for (hinge, addresses) in cloth.hinges.iter().zip(&layout.hinges) {
+            let v = hinge.vertices;
+            let forces = hinge.derivatives(x, |a, b, block| {
+                let ordered = if v[a] < v[b] { block.transpose() } else { block };
+                matrix.add(addresses[packed(a, b)], ordered, a == b);
+            });
+            (0..4).for_each(|a| gradient[v[a]] += forces[a]);
+        }
+        for i in 0..x.len() {
+            let mass = cloth.masses[i];
+            gradient[i].y += mass * GRAVITY;
+            let mut block = DMat3::from_diagonal(DVec3::splat(mass / (h * h)));
+            if let Some(contact) = &self.contacts[i] {
+                let (force, stiffness) = contact.derivatives(x[i]);
+                gradient[i] += force;
+                block += stiffness;
+            }
+            matrix.add(layout.diagonal[i], block, true);
+        }
+        for pin in &self.pins {
+            let (force, stiffness) = pin.derivatives(x[pin.vertex]);
+            gradient[pin.vertex] += force;
+            matrix.add(layout.diagonal[pin.vertex], stiffness, true);
+        }
+    }
+
+    /// Potential energy at `x`, contacts frozen, joules.
+    pub fn energy(&self, x: &[DVec3]) -> f64 {
+        let cloth = self.cloth;
+        let membrane: f64 = cloth.triangles.iter().map(|t| t.energy(cloth.lame, x)).sum();
+        let bending: f64 = cloth.hinges.iter().map(|h| h.energy(x)).sum();
+        let weight: f64 = cloth.masses.iter().zip(x).map(|(m, x)| m * GRAVITY * x.y).sum();
+        let contact: f64 =
+            self.contacts.iter().zip(x).map(|(c, x)| c.as_ref().map_or(0.0, |c| c.energy(*x))).sum();
+        let pins: f64 = self.pins.iter().map(|pin| pin.energy(x[pin.vertex])).sum();
+        membrane + bending + weight + contact + pins
+    }
+
+    /// Solves for the Newton step and takes the share of it that lowers the energy.
+    fn descend(&mut self, h: f64) -> f64 {
+        let mut step: Vec<f64> = self.gradient.iter().flat_map(|g| [-g.x, -g.y, -g.z]).collect();
+        if !self.matrix.solve(&mut step) {
+            return 0.0;
+        }
+        let step: Vec<DVec3> = step.chunks_exact(3).map(DVec3::from_slice).collect();
+        let longest = step.iter().map(|d| d.length_squared()).fold(0.0, f64::max).sqrt();
+        let slope: f64 = step.iter().zip(&self.gradient).map(|(d, g)| d.dot(*g)).sum();
+        let inertia: f64 = step.iter().zip(&self.cloth.masses).map(|(d, m)| m * d.length_squared()).sum();
+        let start = self.energy(&self.positions);
+        let mut share = (LONGEST_MOVE / longest.max(1e-30)).min(1.0);
+        let mut trial = self.positions.clone();
+        for _ in 0..12 {
+            for i in 0..trial.len() {
+                trial[i] = self.positions[i] + step[i] * share;
+            }
+            let energy = self.energy(&trial) + 0.5 * inertia * share * share / (h * h);
+            if energy <= start + 1e-4 * share * slope + 1e-13 * start.abs() {
+                self.accept(trial);
+                return share;
+            }
+            share *= 0.5;
+        }
+        0.0
+    }
+
+    /// Moves to `trial`; anchors follow the vertices that slip or are free.
+    fn accept(&mut self, trial: Vec<DVec3>) {
+        for i in 0..trial.len() {
+            self.clearance[i] -= trial[i].distance(self.positions[i]);
+            self.anchors[i] = match &self.contacts[i] {
+                Some(contact) if contact.grip > 0.0 => contact.slipped_anchor(trial[i]),
+                _ => trial[i],
+            };
+        }
+        self.positions = trial;
+    }
+}

@@ -1,0 +1,51 @@
+//! What a simulated pose looks like, in numbers that decide whether it may be trained on.
+
+use glam::DVec3;
+
+use super::cloth::Cloth;
+
+/// Whether a pose may be used.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Status {
+    /// Static equilibrium was reached.
+    Converged,
+    /// It was not; the reason in words.
+    Rejected {
+        /// What was wanted and what was found.
+        reason: String,
+    },
+}
+
+/// A simulated pose.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outcome {
+    /// Vertex positions in the body frame, metres [n]; finite in every case.
+    pub positions: Vec<DVec3>,
+    /// RMS static force per vertex, in mean vertex weights.
+    pub residual: f64,
+    /// 99th percentile of the largest principal stretch over the triangles (1: unstretched).
+    pub stretch_p99: f64,
+    /// Largest principal stretch.
+    pub stretch_max: f64,
+    /// Least signed distance of a vertex to the body, metres; negative inside. Infinite where nothing touches.
+    pub least_distance: f64,
+    /// Newton iterations taken.
+    pub iterations: usize,
+    /// Whether the pose may be used.
+    pub status: Status,
+}
+
+impl Outcome {
+    /// Whether the pose reached equilibrium.
+    pub fn converged(&self) -> bool {
+        self.status == Status::Converged
+    }
+}
+
+/// 99th percentile and maximum of the largest principal stretch.
+pub(super) fn stretch(cloth: &Cloth, positions: &[DVec3]) -> (f64, f64) {
+    let mut list: Vec<f64> = cloth.triangles.iter().map(|t| t.stretches(positions)[0]).collect();
+    list.sort_by(f64::total_cmp);
+    let last = list.len() - 1;
+    (list[last * 99 / 100], list[last])
+}

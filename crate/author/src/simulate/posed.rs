@@ -1,0 +1,171 @@
+//! Signed distance to the posed body: closest point by a bounding volume tree, sign by angle-weighted pseudo-normals
+//! (Bærentzen & Aanæs 2005). Linear blend skinning makes bodies that cut through themselves, so depth is limited.
+
+use glam::DVec3;
+use parry3d_f64::partitioning::{Bvh, BvhNode};
+
+use super::collider::{Collider, bounds};
+
+/// How far behind a face a point may lie and still be pushed out through it, metres.
+const DEPTH: f64 = 0.05;
+/// The same for a face turned against the one the point was last near: the far side of a thin part, or another limb.
+const DEPTH_OPPOSED: f64 = 0.012;
+
+/// The closest point of the body.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Hit {
+    /// Face of the collider.
+    pub face: u32,
+    /// Barycentric coordinates on the face.
+    pub barycentric: [f64; 3],
+    /// Unit gradient of the signed distance.
+    pub normal: DVec3,
+    /// Signed distance in metres, negative inside.
+    pub distance: f64,
+}
+
+/// A collider in one pose.
+pub(super) struct PosedBody<'a> {
+    /// What is posed.
+    pub collider: &'a Collider,
+    positions: Vec<DVec3>,
+    face_normals: Vec<DVec3>,
+    vertex_normals: Vec<DVec3>,
+    tree: Bvh,
+}
+
+impl<'a> PosedBody<'a> {
+    /// `positions`: posed collider vertices, metres.
+    pub fn new(collider: &'a Collider, positions: Vec<DVec3>) -> Self {
+        let mut vertex_normals = vec![DVec3::ZERO; positions.len()];
+        let mut face_normals = Vec::with_capacity(collider.faces.len());
+        let mut tree = collider.tree.clone();
+        for (index, face) in collider.faces.iter().enumerate() {
+            let corners = face.map(|i| positions[i as usize]);
+            let [a, b, c] = corners;
+            let normal = (b - a).cross(c - a).normalize_or_zero();
+            for k in 0..3 {
+                let (u, v) = (corners[(k + 1) % 3] - corners[k], corners[(k + 2) % 3] - corners[k]);
+                let cosine = u.dot(v) / (u.length() * v.length()).max(1e-30);
+                vertex_normals[face[k] as usize] += normal * cosine.clamp(-1.0, 1.0).acos();
+            }
+            face_normals.push(normal);
+            tree.update_partially_if_present(bounds(corners), index as u32, 0.0);
+        }
+        tree.refit_without_opt();
+        Self { collider, positions, face_normals, vertex_normals, tree }
+    }
+
+    /// The closest body point within `reach` metres, or none. `tracked`: the face found before, which speeds up the
+    /// search and tells near sides from far ones.
+    pub fn closest(&self, point: DVec3, tracked: Option<u32>, reach: f64) -> Option<Hit> {
+        let guess = tracked.and_then(|face| Some((face, self.candidate(face, point, tracked, reach * reach)?)));
+        let bound = guess.as_ref().map_or(reach * reach, |(_, (squared, _))| *squared);
+        let p = point.to_array();
+        let box_distance = |node: &BvhNode, _: f64| {
+            let (low, high) = (node.mins(), node.maxs());
+            let gap = |k: usize| (low[k] - p[k]).max(p[k] - high[k]).max(0.0);
+            gap(0) * gap(0) + gap(1) * gap(1) + gap(2) * gap(2)
+        };
+        let found = self.tree.find_best(bound, box_distance, |face, best| self.candidate(face, point, tracked, best));
+        let (face, (squared, spot)) = found.or(guess)?;
+        let offset = point - spot.point;
+        let distance = squared.sqrt();
+        let sign = if offset.dot(spot.normal) < 0.0 { -1.0 } else { 1.0 };
+        let normal = if distance > 1e-7 { offset * (sign / distance) } else { spot.normal };
+        Some(Hit { face, barycentric: spot.barycentric, normal, distance: sign * distance })
+    }
+
+    /// Squared distance to a face and where, if below `best` and not refused as too deep.
+    fn candidate(&self, face: u32, point: DVec3, tracked: Option<u32>, best: f64) -> Option<(f64, Spot)> {
+        let corners = self.collider.faces[face as usize];
+        let barycentric = closest_on_triangle(point, corners.map(|i| self.positions[i as usize]));
+        let foot: DVec3 = (0..3).map(|k| self.positions[corners[k] as usize] * barycentric[k]).sum();
+        let squared = foot.distance_squared(point);
+        if squared >= best {
+            return None;
+        }
+        let normal = self.pseudo_normal(face, barycentric);
+        if (point - foot).dot(normal) < 0.0 {
+            if self.on_border(face, barycentric) {
+                return None;
+            }
+            let own = tracked.is_none_or(|old| self.face_normals[old as usize].dot(normal) > 0.0);
+            let limit = if own { DEPTH } else { DEPTH_OPPOSED };
+            if squared > limit * limit {
+                return None;
+            }
+        }
+        Some((squared, Spot { point: foot, barycentric, normal }))
+    }
+
+    /// Whether the closest point lies on the border of an open body: nothing is behind that.
+    fn on_border(&self, face: u32, barycentric: [f64; 3]) -> bool {
+        (0..3).any(|k| barycentric[k] == 0.0 && self.collider.neighbours[face as usize][(k + 1) % 3] == face)
+    }
+
+    /// Face normal inside a face, mean of two on an edge, angle-weighted mean at a corner; unit length.
+    fn pseudo_normal(&self, face: u32, barycentric: [f64; 3]) -> DVec3 {
+        let own = self.face_normals[face as usize];
+        let zeros = barycentric.iter().filter(|&&b| b == 0.0).count();
+        let sum = match zeros {
+            0 => return own,
+            1 => {
+                let opposite = barycentric.iter().position(|&b| b == 0.0).unwrap_or(0);
+                let across = self.collider.neighbours[face as usize][(opposite + 1) % 3];
+                own + self.face_normals[across as usize]
+            }
+            _ => {
+                let corner = barycentric.iter().position(|&b| b != 0.0).unwrap_or(0);
+                self.vertex_normals[self.collider.faces[face as usize][corner] as usize]
+            }
+        };
+        sum.try_normalize().unwrap_or(own)
+    }
+}
+
+/// Closest point of a face and the pseudo-normal there.
+struct Spot {
+    point: DVec3,
+    barycentric: [f64; 3],
+    normal: DVec3,
+}
+
+/// Barycentric coordinates of the closest point; exact zeros on edges and corners (Ericson, Real-Time Collision
+/// Detection §5.1.5).
+fn closest_on_triangle(p: DVec3, [a, b, c]: [DVec3; 3]) -> [f64; 3] {
+    let (ab, ac) = (b - a, c - a);
+    let ap = p - a;
+    let (d1, d2) = (ab.dot(ap), ac.dot(ap));
+    if d1 <= 0.0 && d2 <= 0.0 {
+        return [1.0, 0.0, 0.0];
+    }
+    let bp = p - b;
+    let (d3, d4) = (ab.dot(bp), ac.dot(bp));
+    if d3 >= 0.0 && d4 <= d3 {
+        return [0.0, 1.0, 0.0];
+    }
+    let vc = d1 * d4 - d3 * d2;
+    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
+        let v = d1 / (d1 - d3);
+        return [1.0 - v, v, 0.0];
+    }
+    let cp = p - c;
+    let (d5, d6) = (ab.dot(cp), ac.dot(cp));
+    if d6 >= 0.0 && d5 <= d6 {
+        return [0.0, 0.0, 1.0];
+    }
+    let vb = d5 * d2 - d1 * d6;
+    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
+        let w = d2 / (d2 - d6);
+        return [1.0 - w, 0.0, w];
+    }
+    let va = d3 * d6 - d5 * d4;
+    if va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0 {
+        let w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+        return [0.0, 1.0 - w, w];
+    }
+    let scale = 1.0 / (va + vb + vc);
+    let (v, w) = (vb * scale, vc * scale);
+    [1.0 - v - w, v, w]
+}

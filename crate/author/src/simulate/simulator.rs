@@ -1,0 +1,152 @@
+//! Canonical drape and poses: transport along the fixed path, then relaxation to static equilibrium.
+//! A pose depends on nothing but itself; poses may run in parallel and come out bit for bit the same.
+
+use glam::{DAffine3, DVec3};
+
+use super::cloth::Cloth;
+use super::collider::{Collider, blend};
+use super::contact::Pin;
+use super::material::Material;
+use super::newton::{Layout, Probe, Solver};
+use super::outcome::{Outcome, Status, stretch};
+use super::path::{body_frame, is_sound, motion, path};
+use super::posed::PosedBody;
+use super::settings::Settings;
+use super::transport::{adjacency, transport};
+use crate::rig::{Character, Garment, Pose, SkinWeights, Surface};
+use crate::{Error, Result};
+
+/// Simulates one garment on one character. Built once, used from any number of threads.
+pub struct Simulator {
+    character: Character,
+    rest: Vec<DVec3>,
+    cloth: Cloth,
+    layout: Layout,
+    collider: Collider,
+    adjacency: Vec<Vec<u32>>,
+    /// Skin of each attached vertex: that of the closest body point.
+    attached: Vec<(usize, SkinWeights)>,
+    settings: Settings,
+}
+
+impl Simulator {
+    /// Analyses garment and body. The garment stands where it is worn in the canonical pose.
+    pub fn new(character: &Character, garment: &Garment, material: Material, settings: Settings) -> Result<Self> {
+        let rest = garment.mesh.positions.clone();
+        settings.check(rest.len())?;
+        let cloth = Cloth::new(&garment.mesh, &material, settings.shape)?;
+        let collider = Collider::new(character, &garment.mesh, settings.reach)?;
+        let layout = Layout::new(&cloth)?;
+        let attached = attach(&collider, &rest, &settings.attached);
+        let adjacency = adjacency(&cloth);
+        let character =
+            Character { clips: Vec::new(), surface: Surface::default(), ..character.clone() };
+        Ok(Self { character, rest, cloth, layout, collider, adjacency, attached, settings })
+    }
+
+    /// The template `T_C`: the garment at rest on the canonical body, metres in canonical space [n].
+    pub fn drape(&self) -> Result<Vec<DVec3>> {
+        let pose = self.character.canonical_pose();
+        let body = self.collider.pose(&self.character.skinning(&pose));
+        let mut solver = Solver::new(&self.cloth, &self.layout, &self.settings, self.rest.clone());
+        self.pin(&mut solver, &self.rest, &self.character.skinning(&pose));
+        let relaxed = solver.relax(Some(&body), 10 * self.settings.relax_iterations);
+        match self.judge(&solver, &relaxed) {
+            Status::Converged => Ok(solver.positions),
+            Status::Rejected { reason } => Err(Error::Simulation(format!("canonical drape: {reason}"))),
+        }
+    }
+
+    /// Simulates `pose` from `template` (canonical space, as [`drape`](Self::drape) returns it).
+    pub fn simulate(&self, template: &[DVec3], pose: &Pose) -> Outcome {
+        if template.len() != self.rest.len() || template.iter().any(|p| !p.is_finite()) {
+            let wanted = self.rest.len();
+            return self.refuse(format!("template: wanted {wanted} finite vertices, found {}", template.len()));
+        }
+        if !is_sound(&self.character, pose) {
+            let (wanted, found) = (self.character.joints.len(), pose.len());
+            return self.refuse(format!("pose: wanted {wanted} finite, invertible joints, found {found}"));
+        }
+        let poses = path(&self.character, pose, self.settings.path_steps);
+        let start = body_frame(&self.character, &self.character.canonical_pose());
+        let positions = template.iter().map(|p| start.transform_point3(*p)).collect();
+        let mut solver = Solver::new(&self.cloth, &self.layout, &self.settings, positions);
+        let mut body = self.collider.pose(&self.character.skinning(&poses[0]));
+        for pair in poses.windows(2) {
+            transport(&mut solver, &body, &motion(&pair[0], &pair[1]), &self.adjacency);
+            let skinning = self.character.skinning(&pair[1]);
+            body = self.collider.pose(&skinning);
+            self.pin(&mut solver, template, &skinning);
+            for _ in 0..self.settings.path_iterations {
+                solver.probe(Some(&body), self.settings.path_time_step);
+                solver.advance(self.settings.path_time_step);
+            }
+        }
+        let relaxed = solver.relax(Some(&body), self.settings.relax_iterations);
+        self.outcome(solver, relaxed)
+    }
+
+    /// Springs of the attached vertices: their template positions, skinned.
+    fn pin(&self, solver: &mut Solver, template: &[DVec3], skinning: &[DAffine3]) {
+        let stiffness = self.settings.attachment;
+        let pin = |(vertex, skin): &(usize, SkinWeights)| {
+            let target = blend(skin, skinning).transform_point3(template[*vertex]);
+            Pin { vertex: *vertex, target, stiffness }
+        };
+        solver.pins = self.attached.iter().map(pin).collect();
+    }
+
+    fn judge(&self, solver: &Solver, relaxed: &Probe) -> Status {
+        let reject = |reason| Status::Rejected { reason };
+        if !relaxed.residual.is_finite() || solver.positions.iter().any(|p| !p.is_finite()) {
+            return reject("wanted finite forces, found none".into());
+        }
+        if relaxed.residual > self.settings.residual {
+            let wanted = self.settings.residual;
+            return reject(format!("residual: wanted below {wanted}, found {:.4}", relaxed.residual));
+        }
+        if relaxed.least_distance <= 0.0 {
+            let depth = -1e3 * relaxed.least_distance;
+            return reject(format!("wanted no vertex inside the body, found one {depth:.2} mm deep"));
+        }
+        let (_, largest) = stretch(&self.cloth, &solver.positions);
+        if largest > self.settings.stretch_limit {
+            return reject(format!("stretch: wanted below {}, found {largest:.3}", self.settings.stretch_limit));
+        }
+        Status::Converged
+    }
+
+    fn outcome(&self, solver: Solver, relaxed: Probe) -> Outcome {
+        let status = self.judge(&solver, &relaxed);
+        let (stretch_p99, stretch_max) = stretch(&self.cloth, &solver.positions);
+        Outcome {
+            residual: relaxed.residual,
+            stretch_p99,
+            stretch_max,
+            least_distance: relaxed.least_distance,
+            iterations: solver.iterations,
+            status,
+            positions: solver.positions,
+        }
+    }
+
+    /// An outcome for input that cannot be simulated: the garment as given.
+    fn refuse(&self, reason: String) -> Outcome {
+        let frame = body_frame(&self.character, &self.character.canonical_pose());
+        let positions: Vec<DVec3> = self.rest.iter().map(|p| frame.transform_point3(*p)).collect();
+        let (stretch_p99, stretch_max) = stretch(&self.cloth, &positions);
+        let (residual, least_distance) = (f64::INFINITY, f64::INFINITY);
+        let status = Status::Rejected { reason };
+        Outcome { positions, residual, stretch_p99, stretch_max, least_distance, iterations: 0, status }
+    }
+}
+
+/// Attached vertices with the skin of the body point closest to them.
+fn attach(collider: &Collider, rest: &[DVec3], attached: &[u32]) -> Vec<(usize, SkinWeights)> {
+    let body = PosedBody::new(collider, collider.rest.clone());
+    let skin = |&vertex: &u32| {
+        let hit = body.closest(rest[vertex as usize], None, f64::MAX.sqrt())?;
+        Some((vertex as usize, collider.skin(hit.face, hit.barycentric)))
+    };
+    attached.iter().filter_map(skin).collect()
+}

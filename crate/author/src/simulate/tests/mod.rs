@@ -1,0 +1,8 @@
+//! Physics the solver must reproduce, on small scenes made here. simulation.md §3.
+
+mod energy;
+mod fabric;
+mod friction;
+mod pose;
+mod scene;
+mod sphere;

@@ -1,0 +1,66 @@
+//! Carries cloth along when the body takes a step: near the body by the blended rigid motion of the closest point,
+//! weight `exp(-(d - d̂) / 4 cm)`, elsewhere by what the neighbours do. Without it every step is pushed by contact.
+
+use glam::{DAffine3, DVec3};
+
+use super::cloth::Cloth;
+use super::collider::blend;
+use super::newton::Solver;
+use super::posed::PosedBody;
+
+/// Decay length of the body's hold on the cloth, metres.
+const DECAY: f64 = 0.04;
+/// Beyond this distance a vertex only follows its neighbours, metres.
+const RANGE: f64 = 0.12;
+/// Weight of the neighbours' mean against the body's hold, and how often it is taken.
+const SMOOTHING: f64 = 0.15;
+const SWEEPS: usize = 12;
+
+/// Vertex neighbours over the triangle edges [n].
+pub(super) fn adjacency(cloth: &Cloth) -> Vec<Vec<u32>> {
+    let mut lists = vec![Vec::new(); cloth.masses.len()];
+    for triangle in &cloth.triangles {
+        for &i in &triangle.vertices {
+            lists[i].extend(triangle.vertices.iter().filter(|&&j| j != i).map(|&j| j as u32));
+        }
+    }
+    for list in &mut lists {
+        list.sort_unstable();
+        list.dedup();
+    }
+    lists
+}
+
+/// Moves positions and anchors from the body's current pose by `motion`, one transform per joint.
+pub(super) fn transport(solver: &mut Solver, body: &PosedBody, motion: &[DAffine3], adjacency: &[Vec<u32>]) {
+    let n = solver.positions.len();
+    let mut target = vec![DVec3::ZERO; n];
+    let mut hold = vec![0.0; n];
+    for i in 0..n {
+        let x = solver.positions[i];
+        let Some(hit) = body.closest(x, solver.tracked[i], RANGE) else { continue };
+        let rigid = blend(&body.collider.skin(hit.face, hit.barycentric), motion);
+        target[i] = rigid.transform_point3(x) - x;
+        hold[i] = (-(hit.distance - 0.004).max(0.0) / DECAY).exp();
+        solver.tracked[i] = Some(hit.face);
+        if solver.contacts[i].is_some() {
+            solver.anchors[i] = rigid.transform_point3(solver.anchors[i]);
+        }
+    }
+    let mut shift: Vec<DVec3> = target.iter().zip(&hold).map(|(t, h)| *t * *h).collect();
+    for _ in 0..SWEEPS {
+        let old = shift.clone();
+        for i in 0..n {
+            let around: DVec3 = adjacency[i].iter().map(|&j| old[j as usize]).sum();
+            let mean = around / adjacency[i].len().max(1) as f64;
+            shift[i] = (target[i] * hold[i] + mean * SMOOTHING) / (hold[i] + SMOOTHING);
+        }
+    }
+    for i in 0..n {
+        solver.positions[i] += shift[i];
+        if solver.contacts[i].is_none() {
+            solver.anchors[i] = solver.positions[i];
+        }
+    }
+    solver.moved();
+}
