@@ -2,9 +2,12 @@
 
 pub mod dataset;
 mod error;
+pub mod evaluate;
 pub mod gltf;
+pub mod ground_truth;
 pub mod rig;
 pub mod simulate;
+pub mod synthetic;
 pub mod train;
 
 pub use error::{Error, Result};

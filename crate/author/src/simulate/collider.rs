@@ -37,8 +37,10 @@ impl Collider {
         let points: Vec<[f64; 3]> = garment.positions.iter().map(|p| p.to_array()).collect();
         let tree: ImmutableKdTree<f64, 3> = ImmutableKdTree::new_from_slice(&points)
             .map_err(|error| Error::Garment(format!("nearest-vertex search: {error:?}")))?;
-        let distance: Vec<f64> =
-            body.iter().map(|p| tree.query(&p.to_array()).nearest_one::<SquaredEuclidean<f64>>().execute().distance.sqrt()).collect();
+        let distance: Vec<f64> = body
+            .iter()
+            .map(|p| tree.query(&p.to_array()).nearest_one::<SquaredEuclidean<f64>>().execute().distance.sqrt())
+            .collect();
         near_enough(body, &distance)?;
         let mut near = vec![false; character.joints.len()];
         for (weights, distance) in character.weights.iter().zip(&distance) {

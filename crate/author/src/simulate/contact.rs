@@ -42,8 +42,7 @@ impl Contact {
     pub fn energy(&self, x: DVec3) -> f64 {
         let depth = self.depth(x);
         let slip = self.slip(x).length();
-        let friction =
-            if slip >= SLIP { slip - SLIP / 3.0 } else { slip * slip / SLIP * (1.0 - slip / (3.0 * SLIP)) };
+        let friction = if slip >= SLIP { slip - SLIP / 3.0 } else { slip * slip / SLIP * (1.0 - slip / (3.0 * SLIP)) };
         0.5 * self.stiffness * depth * depth + self.grip * friction
     }
 

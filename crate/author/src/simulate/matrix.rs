@@ -90,9 +90,7 @@ impl<'a> Matrix<'a> {
             pattern,
             values: vec![0.0; pattern.len()],
             factor: vec![0.0; symbolic.len_val()],
-            factor_scratch: MemBuffer::new(
-                symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default()),
-            ),
+            factor_scratch: MemBuffer::new(symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default())),
             solve_scratch: MemBuffer::new(symbolic.solve_in_place_scratch::<f64>(1, Par::Seq)),
         }
     }

@@ -61,8 +61,7 @@ impl Triangle {
 
     fn strain(&self, (mu, lambda): (f64, f64), x: &[DVec3]) -> Strain {
         let columns @ [f1, f2] = self.deformation(x);
-        let (g11, g22, g12) =
-            (0.5 * (f1.length_squared() - 1.0), 0.5 * (f2.length_squared() - 1.0), 0.5 * f1.dot(f2));
+        let (g11, g22, g12) = (0.5 * (f1.length_squared() - 1.0), 0.5 * (f2.length_squared() - 1.0), 0.5 * f1.dot(f2));
         let trace = g11 + g22;
         let energy = self.area * (mu * (g11 * g11 + g22 * g22 + 2.0 * g12 * g12) + 0.5 * lambda * trace * trace);
         let stress = [2.0 * mu * g11 + lambda * trace, 2.0 * mu * g22 + lambda * trace, 2.0 * mu * g12];
@@ -75,12 +74,7 @@ impl Triangle {
     }
 
     /// Gradient per corner in newtons, and the Hessian through `block(a, b, H_ab)` for the pairs `a >= b`.
-    pub fn derivatives(
-        &self,
-        lame: (f64, f64),
-        x: &[DVec3],
-        mut block: impl FnMut(usize, usize, DMat3),
-    ) -> [DVec3; 3] {
+    pub fn derivatives(&self, lame: (f64, f64), x: &[DVec3], mut block: impl FnMut(usize, usize, DMat3)) -> [DVec3; 3] {
         let Strain { columns: [f1, f2], stress: [s11, s22, s12], .. } = self.strain(lame, x);
         let (p1, p2) = ((f1 * s11 + f2 * s12) * self.area, (f1 * s12 + f2 * s22) * self.area);
         let (mu, lambda) = lame;

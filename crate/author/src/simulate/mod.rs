@@ -5,6 +5,7 @@ mod bending;
 mod cloth;
 mod collider;
 mod contact;
+mod distance;
 mod material;
 mod matrix;
 mod membrane;
@@ -19,6 +20,7 @@ mod transport;
 #[cfg(test)]
 mod tests;
 
+pub use distance::BodyDistance;
 pub use material::{GRAVITY, Material};
 pub use outcome::{Outcome, Status};
 pub use path::{body_frame, path, to_body_frame};

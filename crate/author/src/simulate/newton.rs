@@ -233,8 +233,7 @@ impl<'a> Solver<'a> {
         let membrane: f64 = cloth.triangles.iter().map(|t| t.energy(cloth.lame, x)).sum();
         let bending: f64 = cloth.hinges.iter().map(|h| h.energy(x)).sum();
         let weight: f64 = cloth.masses.iter().zip(x).map(|(m, x)| m * GRAVITY * x.y).sum();
-        let contact: f64 =
-            self.contacts.iter().zip(x).map(|(c, x)| c.as_ref().map_or(0.0, |c| c.energy(*x))).sum();
+        let contact: f64 = self.contacts.iter().zip(x).map(|(c, x)| c.as_ref().map_or(0.0, |c| c.energy(*x))).sum();
         let pins: f64 = self.pins.iter().map(|pin| pin.energy(x[pin.vertex])).sum();
         membrane + bending + weight + contact + pins
     }

@@ -39,8 +39,7 @@ impl Simulator {
         let layout = Layout::new(&cloth)?;
         let attached = attach(&collider, &rest, &settings.attached);
         let adjacency = adjacency(&cloth);
-        let character =
-            Character { clips: Vec::new(), surface: Surface::default(), ..character.clone() };
+        let character = Character { clips: Vec::new(), surface: Surface::default(), ..character.clone() };
         Ok(Self { character, rest, cloth, layout, collider, adjacency, attached, settings })
     }
 

@@ -91,9 +91,8 @@ fn tension_stretches_by_the_membrane_law() {
             cloth.masses[row * (columns + 1) + columns] += pull * width * share / rows as f64 / GRAVITY;
         }
         let x = hang(&cloth, &mesh.positions, |i| i % (columns + 1) == 0);
-        let at = |column: usize| {
-            (0..=rows).map(|row| x[row * (columns + 1) + column].y).sum::<f64>() / (rows + 1) as f64
-        };
+        let at =
+            |column: usize| (0..=rows).map(|row| x[row * (columns + 1) + column].y).sum::<f64>() / (rows + 1) as f64;
         // Away from both ends, where the held edge cannot contract.
         let (upper, lower) = (columns / 4, 3 * columns / 4);
         let strain = (at(upper) - at(lower)) / (0.5 * length) - 1.0;

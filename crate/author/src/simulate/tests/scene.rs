@@ -46,8 +46,7 @@ pub fn sheet(n: usize, y: f64) -> Mesh {
 /// Sphere of that radius around the origin: an octahedron subdivided `levels` times.
 pub fn sphere(radius: f64, levels: usize) -> Mesh {
     let mut positions = vec![DVec3::X, DVec3::Y, DVec3::Z, -DVec3::X, -DVec3::Y, -DVec3::Z];
-    let mut triangles =
-        vec![[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3, 1, 5], [4, 3, 5], [0, 4, 5u32]];
+    let mut triangles = vec![[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3, 1, 5], [4, 3, 5], [0, 4, 5u32]];
     for _ in 0..levels {
         let mut middle = BTreeMap::new();
         let mut finer = Vec::new();

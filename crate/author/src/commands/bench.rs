@@ -1,0 +1,93 @@
+//! `ctsn bench`: milliseconds per prediction and per training step on this machine.
+
+use anyhow::Result;
+use ctsn_author::synthetic;
+use ctsn_author::train::{Architecture, Settings, Trainer};
+use ctsn_core::cpu::Level;
+use ctsn_core::model::Storage;
+use ctsn_core::{Predictor, Streams};
+use std::path::PathBuf;
+use std::time::Instant;
+
+/// Time predictions and training steps of a model of given size with random weights
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// Cloth vertices, about
+    #[arg(long, default_value_t = 5000)]
+    vertices: usize,
+    /// Joints
+    #[arg(long, default_value_t = 65)]
+    joints: usize,
+    /// Size of the pose embedding, m
+    #[arg(long, default_value_t = 32)]
+    embedding: usize,
+    /// Mesh basis matrices, k
+    #[arg(long, default_value_t = 64)]
+    basis: usize,
+    /// Graph transformer layers, L
+    #[arg(long, default_value_t = 2)]
+    layers: usize,
+    /// Features of a graph layer, F, in 4 heads
+    #[arg(long, default_value_t = 64)]
+    features: usize,
+    /// Predictions timed
+    #[arg(long, default_value_t = 200)]
+    runs: usize,
+    /// Only write the model to this file, for a benchmark elsewhere
+    #[arg(long)]
+    write_model: Option<PathBuf>,
+    /// Time training steps as well
+    #[arg(long)]
+    train: bool,
+}
+
+pub fn run(arguments: &Arguments) -> Result<()> {
+    let Arguments { vertices, joints, embedding, basis, layers, features, runs, .. } = *arguments;
+    let architecture = Architecture { embedding, basis, layers, heads: 4, features };
+    let (setup, samples) = synthetic::dataset(vertices, joints, 16);
+    let samples: Vec<_> = samples.iter().collect();
+    let model = ctsn_author::train::initial(&setup, &samples, architecture, 1)?;
+    if let Some(path) = &arguments.write_model {
+        return Ok(ctsn_author::dataset::write(path, &model.to_bytes(Storage::F32))?);
+    }
+    println!("n = {}, J = {joints}, {architecture:?}", model.sizes.vertices);
+    for (name, level) in [("SIMD", Level::new()), ("baseline", Level::baseline())] {
+        let mut predictor = Predictor::from_model(model.clone(), level);
+        let mut times: Vec<f64> = Vec::new();
+        for run in 0..runs.max(1) {
+            let start = Instant::now();
+            predictor.predict_row_major(&samples[run % samples.len()].joints, Streams::Both)?;
+            times.push(start.elapsed().as_secs_f64() * 1e3);
+        }
+        println!(
+            "{name:<9} {:.2} ms a prediction (median of {}, least {:.2})",
+            median(&mut times),
+            times.len(),
+            times[0]
+        );
+    }
+    if arguments.train {
+        let settings = Settings { epochs: 10, ..Settings::default() };
+        let mut trainer = Trainer::new(model, &setup, &samples, settings)?;
+        let (mut times, mut last) = (Vec::new(), Instant::now());
+        while trainer.epoch < settings.epochs {
+            trainer.epoch(|_, _, _| {
+                times.push(last.elapsed().as_secs_f64() * 1e3);
+                last = Instant::now();
+            })?;
+        }
+        println!(
+            "training  {:.1} ms a step of {} poses (median of {})",
+            median(&mut times),
+            settings.batch,
+            times.len()
+        );
+    }
+    Ok(())
+}
+
+/// Sorts the times; the median.
+fn median(times: &mut [f64]) -> f64 {
+    times.sort_by(f64::total_cmp);
+    times[times.len() / 2]
+}

@@ -1,0 +1,41 @@
+//! `ctsn inspect`: what is in a model file.
+
+use anyhow::{Context, Result};
+use ctsn_author::dataset;
+use ctsn_core::file::Tensors;
+use ctsn_core::model::HostModel;
+use std::path::PathBuf;
+
+/// Show sizes, tensors, bytes, joints and what a model was trained on
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// Model file (safetensors)
+    model: PathBuf,
+}
+
+pub fn run(arguments: &Arguments) -> Result<()> {
+    let bytes = dataset::read(&arguments.model)?;
+    let context = || arguments.model.display().to_string();
+    let file = Tensors::parse(&bytes).with_context(context)?;
+    let model = HostModel::parse(&bytes).with_context(context)?;
+    let sizes = model.sizes;
+    println!("{}: {} bytes, {} tensors", arguments.model.display(), bytes.len(), file.tensors.len());
+    println!("  cloth      {} vertices, {} triangles", sizes.vertices, model.triangles.len() / 3);
+    println!("  joints     {}, root {}, frame {:?}", sizes.joints, model.rig.joints[model.rig.root], model.rig.frame);
+    println!("  embedding  m = {}, layers {}", sizes.embedding, outputs(&model.embedding));
+    println!("  graph      {} layers, {} heads × {}", model.layers.len(), sizes.heads, sizes.features / sizes.heads);
+    println!("  vertex MLP k = {}, layers {}", sizes.basis, outputs(&model.vertex));
+    println!("  skinning   up to {} joints a vertex", model.skin.width);
+    println!("  trained    {}", model.training.as_deref().unwrap_or("(the file does not say)"));
+    println!("  joints     {}", model.rig.joints.join(", "));
+    println!("  tensors");
+    for (name, tensor) in &file.tensors {
+        let shape = format!("{:?}", tensor.shape);
+        println!("    {name:<24} {:<4} {shape:<16} {:>10} bytes", tensor.dtype.name(), tensor.bytes.len());
+    }
+    Ok(())
+}
+
+fn outputs(layers: &[ctsn_core::model::Linear<Vec<f32>>]) -> String {
+    layers.iter().map(|layer| layer.outputs.to_string()).collect::<Vec<_>>().join(" → ")
+}

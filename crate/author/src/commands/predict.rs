@@ -1,0 +1,73 @@
+//! `ctsn predict`: poses in, positions and normals out.
+
+use super::model;
+use anyhow::{Context, Result};
+use ctsn_author::dataset;
+use ctsn_core::cpu::Level;
+use ctsn_core::file::{Tensor, Tensors};
+use ctsn_core::{Predictor, Streams};
+use std::path::PathBuf;
+
+/// Predict cloth for a file of poses
+///
+/// POSES holds the tensor `pose.joints` [P, J, 3, 4]: row-major world transforms of the model's joints, in metres.
+/// OUT receives `positions` and `normals` [P, n, 3], in world space.
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// Model file (safetensors)
+    model: PathBuf,
+    /// Poses (safetensors)
+    poses: PathBuf,
+    /// Where to write the prediction (safetensors)
+    #[arg(short, long)]
+    output: PathBuf,
+    /// What computes
+    #[arg(long, value_enum, default_value = "cpu")]
+    device: Device,
+    /// What runs of the network
+    #[arg(long, value_enum, default_value = "both")]
+    streams: StreamsArgument,
+}
+
+#[derive(Clone, Copy, clap::ValueEnum)]
+enum Device {
+    /// SIMD on this machine's processor
+    Cpu,
+}
+
+#[derive(Clone, Copy, clap::ValueEnum)]
+enum StreamsArgument {
+    /// The whole network
+    Both,
+    /// The skeleton stream alone: the coarse prediction
+    Skeleton,
+    /// Plain skinning
+    None,
+}
+
+pub fn run(arguments: &Arguments) -> Result<()> {
+    let model = model(&arguments.model)?;
+    let (joints, n) = (model.sizes.joints, model.sizes.vertices);
+    let poses = dataset::tensors(&arguments.poses)?;
+    let shape = [None, Some(joints), Some(3), Some(4)];
+    let (poses, shape) = poses.f32("pose.joints", &shape).with_context(|| arguments.poses.display().to_string())?;
+    let streams = match arguments.streams {
+        StreamsArgument::Both => Streams::Both,
+        StreamsArgument::Skeleton => Streams::Skeleton,
+        StreamsArgument::None => Streams::None,
+    };
+    let Device::Cpu = arguments.device;
+    let mut predictor = Predictor::from_model(model, Level::new());
+    let (mut positions, mut normals) = (Vec::new(), Vec::new());
+    for pose in poses.chunks_exact(12 * joints) {
+        predictor.predict_row_major(pose, streams)?;
+        positions.extend_from_slice(predictor.positions());
+        normals.extend_from_slice(predictor.normals());
+    }
+    let mut out = Tensors::default();
+    out.tensors.insert("positions".to_owned(), Tensor::f32(&[shape[0], n, 3], &positions));
+    out.tensors.insert("normals".to_owned(), Tensor::f32(&[shape[0], n, 3], &normals));
+    dataset::write(&arguments.output, &out.to_bytes())?;
+    println!("{} poses of {n} vertices -> {}", shape[0], arguments.output.display());
+    Ok(())
+}

@@ -1,0 +1,33 @@
+//! Signed distances of cloth vertices to the posed body, for judging a prediction as the simulator judges itself.
+
+use glam::DVec3;
+
+use super::collider::Collider;
+use super::path::to_body_frame;
+use crate::Result;
+use crate::rig::{Character, Mesh, Pose};
+
+/// Joints whose part of the body is further than this from the garment in the canonical pose are left out, metres.
+const REACH: f64 = 0.3;
+
+/// A body prepared for distance queries.
+pub struct BodyDistance {
+    character: Character,
+    collider: Collider,
+}
+
+impl BodyDistance {
+    /// The body of `character` around `garment`, both canonical.
+    pub fn new(character: &Character, garment: &Mesh) -> Result<Self> {
+        let collider = Collider::new(character, garment, REACH)?;
+        Ok(Self { character: character.clone(), collider })
+    }
+
+    /// Signed distance of each vertex [n] (body frame, metres) to the body in `pose` (world), negative inside;
+    /// infinite where the body is further than half a metre.
+    pub fn signed(&self, pose: &Pose, vertices: &[DVec3]) -> Vec<f64> {
+        let body = self.collider.pose(&self.character.skinning(&to_body_frame(&self.character, pose)));
+        let distance = |vertex: &DVec3| body.closest(*vertex, None, 0.5).map_or(f64::INFINITY, |hit| hit.distance);
+        vertices.iter().map(distance).collect()
+    }
+}
