@@ -3,6 +3,7 @@
 pub mod dataset;
 mod error;
 pub mod gltf;
+pub mod render;
 pub mod rig;
 pub mod simulate;
 pub mod train;
