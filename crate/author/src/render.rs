@@ -247,13 +247,9 @@ fn encode(linear: f64) -> u8 {
 mod tests {
     use super::*;
 
-    /// A square in the plane z = `z`, seen from +Z when `front`.
-    fn square(z: f64, front: bool) -> (Vec<DVec3>, Vec<DVec3>, Vec<[u32; 3]>) {
-        let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
-        let positions = corners.iter().map(|c| DVec3::new(c[0], c[1], z)).collect();
-        let normal = if front { DVec3::Z } else { -DVec3::Z };
-        let triangles = if front { vec![[0, 1, 2], [0, 2, 3]] } else { vec![[2, 1, 0], [3, 2, 0]] };
-        (positions, vec![normal; 4], triangles)
+    /// Corners of a square at that z, counter-clockwise seen from +Z.
+    fn square(z: f64) -> [DVec3; 4] {
+        [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[x, y]| DVec3::new(x, y, z))
     }
 
     fn middle(layers: &[Layer], yaw: f64) -> [u8; 3] {
@@ -263,19 +259,15 @@ mod tests {
 
     #[test]
     fn nearer_hides_farther_and_backs_are_drawn_only_on_cloth() {
-        let (near, far) = (square(0.5, true), square(-0.5, true));
-        let layer = |square: &(Vec<DVec3>, Vec<DVec3>, Vec<[u32; 3]>), colour, two_sided| {
-            let (positions, normals, triangles) = square.clone();
-            (positions, normals, triangles, vec![colour], two_sided)
-        };
-        let (red, green) = (layer(&near, [1.0, 0.0, 0.0], true), layer(&far, [0.0, 1.0, 0.0], false));
-        let layers = [&red, &green].map(|(positions, normals, triangles, colour, two_sided)| Layer {
+        let (near, far) = (square(0.5), square(-0.5));
+        let layer = |positions, colour, two_sided| Layer {
             positions,
-            normals,
-            triangles,
+            normals: &[DVec3::Z; 4],
+            triangles: &[[0, 1, 2], [0, 2, 3]],
             colour,
-            two_sided: *two_sided,
-        });
+            two_sided,
+        };
+        let layers = [layer(&near, &[[1.0, 0.0, 0.0]], true), layer(&far, &[[0.0, 1.0, 0.0]], false)];
         let front = middle(&layers, 0.0);
         assert!(front[0] > 150 && front[1] == 0, "the near red square hides the green one: {front:?}");
         let back = middle(&layers, std::f64::consts::PI);

@@ -208,7 +208,7 @@ fn truncated_and_flipped_files_never_panic() {
         (random >> 33) as usize % below
     };
     let json = 20 + u32::from_le_bytes([whole[12], whole[13], whole[14], whole[15]]) as usize;
-    let (mut refused, rounds) = (0, 3000);
+    let (mut refused, rounds) = (0, rounds());
     for round in 0..rounds {
         let mut bytes = whole.clone();
         // Half of the flips in the JSON, where a digit makes an offset lie; half anywhere.

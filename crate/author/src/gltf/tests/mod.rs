@@ -68,8 +68,8 @@ fn tube_mesh() -> (Mesh, Surface) {
         let turn = DQuat::from_rotation_y(std::f64::consts::TAU * side / f64::from(SIDES));
         turn * DVec3::new(0.0, 0.0, 0.1) + DVec3::Y * (0.1 * f64::from(ring))
     };
-    let welded = |ring: u32, side: u32| ring * SIDES + side % SIDES;
-    let drawn = |ring: u32, side: u32| ring * (SIDES + 1) + side;
+    let welded: fn(u32, u32) -> u32 = |ring, side| ring * SIDES + side % SIDES;
+    let drawn: fn(u32, u32) -> u32 = |ring, side| ring * (SIDES + 1) + side;
     let (mut mesh, mut surface) = (Mesh::default(), Surface::default());
     for ring in 0..RINGS {
         mesh.positions.extend((0..SIDES).map(|side| ring_point(ring, f64::from(side))));
@@ -79,16 +79,13 @@ fn tube_mesh() -> (Mesh, Surface) {
         }
     }
     for (ring, side) in (0..RINGS - 1).flat_map(|ring| (0..SIDES).map(move |side| (ring, side))) {
-        let corners = |at: fn(u32, u32, &dyn Fn(u32, u32) -> u32) -> [[u32; 3]; 2], index: &dyn Fn(u32, u32) -> u32| {
-            at(ring, side, index)
+        let quad = |index: fn(u32, u32) -> u32| {
+            let (below, above) =
+                ([side, side + 1].map(|s| index(ring, s)), [side, side + 1].map(|s| index(ring + 1, s)));
+            [[below[0], below[1], above[1]], [below[0], above[1], above[0]]]
         };
-        let quad = |ring: u32, side: u32, index: &dyn Fn(u32, u32) -> u32| {
-            let [a, b, c, d] =
-                [index(ring, side), index(ring, side + 1), index(ring + 1, side + 1), index(ring + 1, side)];
-            [[a, b, c], [a, c, d]]
-        };
-        mesh.triangles.extend(corners(quad, &welded));
-        surface.triangles.extend(corners(quad, &drawn));
+        mesh.triangles.extend(quad(welded));
+        surface.triangles.extend(quad(drawn));
     }
     for side in 1..SIDES - 1 {
         let (bottom, top) = ([0, side + 1, side], [0, side, side + 1]);
