@@ -122,3 +122,58 @@ impl Track {
         std::array::from_fn(|i| if i < width { self.values[index * width + i] } else { 0.0 })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::FRAC_1_SQRT_2;
+
+    fn track(interpolation: Interpolation, times: &[f64], values: &[f64]) -> Track {
+        let (times, values) = (times.to_vec(), values.to_vec());
+        Track { node: 0, property: Property::Translation, interpolation, times, values }
+    }
+
+    #[test]
+    fn steps_hold_and_lines_mix() {
+        let values = [1.0, 2.0, 3.0, 3.0, 6.0, 9.0];
+        let step = track(Interpolation::Step, &[1.0, 3.0], &values);
+        let line = track(Interpolation::Linear, &[1.0, 3.0], &values);
+        assert_eq!(step.at(2.99)[..3], [1.0, 2.0, 3.0]);
+        assert_eq!(line.at(1.5)[..3], [1.5, 3.0, 4.5]);
+        for track in [step, line] {
+            assert_eq!(track.at(-7.0)[..3], [1.0, 2.0, 3.0]);
+            assert_eq!(track.at(3.0)[..3], [3.0, 6.0, 9.0]);
+            assert_eq!(track.at(7.0)[..3], [3.0, 6.0, 9.0]);
+        }
+    }
+
+    #[test]
+    fn cubic_splines_reproduce_a_cubic() {
+        let curve = |t: f64| t * t * t - 2.0 * t;
+        let slope = |t: f64| 3.0 * t * t - 2.0;
+        let times = [0.5, 1.5, 4.0];
+        let values: Vec<f64> =
+            times.iter().flat_map(|&t| [slope(t), curve(t), slope(t)]).flat_map(|x| [x; 3]).collect();
+        let spline = track(Interpolation::CubicSpline, &times, &values);
+        for time in [0.5, 0.7, 1.5, 2.0, 3.9, 4.0] {
+            assert!((spline.at(time)[1] - curve(time)).abs() < 1e-12, "at {time}");
+        }
+    }
+
+    #[test]
+    fn rotations_take_the_shorter_way_at_constant_speed() {
+        // Half a turn's half about Y, the second key with the opposite sign.
+        let values = [0.0, 0.0, 0.0, 1.0, 0.0, -FRAC_1_SQRT_2, 0.0, -FRAC_1_SQRT_2];
+        let mut turn = track(Interpolation::Linear, &[0.0, 1.0], &values);
+        turn.property = Property::Rotation;
+        let third = unit_rotation(turn.at(1.0 / 3.0));
+        let wanted = glam::DQuat::from_rotation_y(std::f64::consts::FRAC_PI_2 / 3.0);
+        assert!(third.dot(wanted).abs() > 1.0 - 1e-12, "{third}");
+    }
+
+    #[test]
+    fn keys_at_one_time_are_no_division_by_zero() {
+        let jump = track(Interpolation::Linear, &[0.0, 1.0, 1.0, 2.0], &[0.0, 1.0, 5.0, 6.0].map(|x| [x; 3]).concat());
+        assert_eq!([0.5, 1.0, 1.5].map(|time| jump.at(time)[0]), [0.5, 5.0, 5.5]);
+    }
+}

@@ -45,7 +45,8 @@ fn decode(file: &File, image: &::gltf::Image) -> Read<RgbImage> {
         Source::View { view, .. } => image::load_from_memory(file.view(&view)?),
         Source::Uri { uri, .. } => image::load_from_memory(&file.uri(uri)?),
     };
-    picture.map(|picture| picture.to_rgb8()).map_err(|error| error.to_string())
+    let picture = picture.map_err(|error| error.to_string())?.to_rgb8();
+    if picture.is_empty() { Err("an image without pixels".to_string()) } else { Ok(picture) }
 }
 
 /// Nearest texel, the texture repeated, sRGB made linear.
@@ -56,6 +57,6 @@ fn texel(picture: &RgbImage, uv: DVec2) -> [f32; 3] {
 }
 
 /// sRGB transfer function, to linear light. IEC 61966-2-1.
-pub(super) fn linear(channel: f32) -> f32 {
+fn linear(channel: f32) -> f32 {
     if channel <= 0.04045 { channel / 12.92 } else { ((channel + 0.055) / 1.055).powf(2.4) }
 }

@@ -5,7 +5,11 @@ use super::Read;
 use crate::Error;
 use ::gltf::accessor::{DataType, Dimensions, sparse::IndexType};
 use ::gltf::buffer::{self, Data, View};
-use ::gltf::{Accessor, Document, Gltf};
+use ::gltf::json::Root;
+use ::gltf::json::animation::VALID_PROPERTIES;
+use ::gltf::json::image::MimeType;
+use ::gltf::json::validation::Checked;
+use ::gltf::{Accessor, Document, Gltf, Semantic};
 use std::path::{Path, PathBuf};
 
 /// Most components one accessor may hold: 2^27 f64 are 1 GiB, far past any character.
@@ -29,7 +33,7 @@ impl File {
         File::parse(&bytes, folder).map_err(|reason| Error::File { path: path.into(), reason })
     }
 
-    fn parse(bytes: &[u8], folder: PathBuf) -> Read<File> {
+    pub fn parse(bytes: &[u8], folder: PathBuf) -> Read<File> {
         let Gltf { document, blob } = parse_unchecked(bytes)?;
         let mut json = document.into_json();
         json.extensions_required.retain(|name| !UNDERSTOOD.iter().any(|known| name.starts_with(known)));
@@ -37,6 +41,7 @@ impl File {
             let wanted = json.extensions_required.join(", ");
             return Err(format!("needs glTF extensions that are not supported: {wanted}; export without them"));
         }
+        mend(&mut json)?;
         let document = Document::from_json(json).map_err(|error| format!("not a valid glTF: {error}"))?;
         for source in document.buffers().map(|buffer| buffer.source()) {
             if let buffer::Source::Uri(uri) = source {
@@ -140,6 +145,43 @@ fn parse_unchecked(bytes: &[u8]) -> Read<Gltf> {
     Gltf::from_slice_without_validation(bytes).map_err(|error| format!("not a glTF: {error}"))
 }
 
+/// Refuses references on which the `gltf` crate panics because its validation skips them, and fills in what it demands but
+/// nothing here needs: bounds of positions, and the type of an image, which its bytes tell.
+fn mend(json: &mut Root) -> Read<()> {
+    for (index, animation) in json.animations.iter().enumerate() {
+        for target in animation.channels.iter().map(|channel| &channel.target) {
+            let node = target.node.value();
+            if node >= json.nodes.len() {
+                return Err(format!("animation {index} moves node {node}, of {}", json.nodes.len()));
+            }
+            if matches!(target.path, Checked::Invalid) {
+                return Err(format!("animation {index}: a channel's path is none of {VALID_PROPERTIES:?}"));
+            }
+        }
+    }
+    let accessors = json.accessors.len();
+    for (index, mesh) in json.meshes.iter().enumerate() {
+        for primitive in &mesh.primitives {
+            let Some(at) = primitive.attributes.get(&Checked::Valid(Semantic::Positions)) else { continue };
+            let Some(accessor) = json.accessors.get_mut(at.value()) else {
+                return Err(format!("mesh {index}: its positions are in accessor {at}, of {accessors}"));
+            };
+            accessor.min.get_or_insert_with(|| vec![0.0; 3].into());
+            accessor.max.get_or_insert_with(|| vec![0.0; 3].into());
+        }
+    }
+    for (index, image) in json.images.iter_mut().enumerate() {
+        match (&image.buffer_view, &image.uri) {
+            (None, None) => return Err(format!("image {index} has neither bytes nor a URI")),
+            (Some(_), _) => {
+                image.mime_type.get_or_insert_with(|| MimeType("image/png".to_string()));
+            }
+            (None, Some(_)) => {}
+        }
+    }
+    Ok(())
+}
+
 /// Refuses percent-encodings that are not UTF-8, on which the `gltf` crate panics.
 fn check_uri(uri: &str) -> Read<()> {
     let mut bytes = Vec::new();
@@ -172,5 +214,46 @@ fn number(bytes: &[u8], kind: DataType) -> f64 {
         DataType::I16 => f64::from(bits as u16 as i16),
         DataType::U8 | DataType::U16 | DataType::U32 => f64::from(bits),
         DataType::F32 => f64::from(f32::from_bits(bits)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::{Value, json};
+
+    /// The components of the one accessor of a file whose buffer is 01 80 FF 7F 02 00 00 00.
+    fn read(accessor: Value, wanted: Dimensions) -> Read<Vec<f64>> {
+        let json = json!({ "asset": { "version": "2.0" }, "accessors": [accessor],
+            "buffers": [{ "byteLength": 8, "uri": "data:;base64,AYD/fwIAAAA=" }],
+            "bufferViews": [{ "buffer": 0, "byteLength": 8 }, { "buffer": 0, "byteOffset": 4, "byteLength": 1 }] });
+        let file = File::parse(json.to_string().as_bytes(), PathBuf::new())?;
+        file.components(&file.document.accessors().next().ok_or("no accessor")?, wanted, "numbers")
+    }
+
+    #[test]
+    fn each_component_type_is_decoded() {
+        let one = |kind: u32, normalized: bool, count: usize| {
+            let accessor = json!({ "bufferView": 0, "componentType": kind, "normalized": normalized, "count": count,
+                "type": "SCALAR" });
+            read(accessor, Dimensions::Scalar).unwrap()
+        };
+        assert_eq!(one(5120, false, 4), [1.0, -128.0, -1.0, 127.0]);
+        assert_eq!(one(5120, true, 4), [1.0 / 127.0, -1.0, -1.0 / 127.0, 1.0]);
+        assert_eq!(one(5121, true, 3), [1.0 / 255.0, 128.0 / 255.0, 1.0]);
+        assert_eq!(one(5122, false, 2), [-32767.0, 32767.0]);
+        assert_eq!(one(5123, true, 2), [32769.0 / 65535.0, 32767.0 / 65535.0]);
+        assert_eq!(one(5125, false, 2)[1], 2.0);
+    }
+
+    #[test]
+    fn sparse_accessors_change_single_elements() {
+        let sparse = |count: usize| {
+            json!({ "componentType": 5121, "count": count, "type": "SCALAR", "sparse": { "count": 1,
+                "indices": { "bufferView": 1, "componentType": 5121 }, "values": { "bufferView": 0, "byteOffset": 3 } } })
+        };
+        assert_eq!(read(sparse(4), Dimensions::Scalar).unwrap(), [0.0, 0.0, 127.0, 0.0]);
+        assert!(read(sparse(2), Dimensions::Scalar).unwrap_err().contains("index 2 of 2"));
+        assert!(read(sparse(usize::MAX / 2), Dimensions::Scalar).unwrap_err().contains("more than"));
     }
 }

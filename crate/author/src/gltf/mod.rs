@@ -8,6 +8,9 @@ mod nodes;
 mod part;
 mod skeleton;
 mod weld;
+mod write;
+
+pub use write::{Appearance, write_character, write_garment};
 
 use crate::rig::{Character, Clip, Garment, SkinWeights};
 use crate::{Error, Result};
@@ -164,3 +167,6 @@ fn garment(file: &File, scale: f64) -> Read<Garment> {
     }
     Ok(Garment { mesh: welded.mesh, surface: welded.surface })
 }
+
+#[cfg(test)]
+mod tests;
