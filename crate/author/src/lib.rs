@@ -2,6 +2,7 @@
 
 pub mod dataset;
 mod error;
+pub mod garment;
 pub mod gltf;
 pub mod rig;
 pub mod simulate;
