@@ -1,0 +1,142 @@
+//! Extracts the closed shell from the field, cuts it at the openings' planes and keeps the outer piece.
+//! One loop per opening: past each plane only the piece that holds the limb's end falls away.
+
+use super::field::Field;
+use super::opening::Opening;
+use crate::rig::Mesh;
+use fast_surface_nets::ndshape::RuntimeShape;
+use fast_surface_nets::{SurfaceNetsBuffer, surface_nets};
+use glam::{DVec3, Vec3};
+use std::collections::BTreeMap;
+
+/// An open mesh and, for each vertex on its rim, the opening it lies on.
+pub(super) struct Piece {
+    /// The mesh, metres, outwards.
+    pub mesh: Mesh,
+    /// Opening per vertex.
+    pub rim: Vec<Option<usize>>,
+}
+
+/// The field's zero set, largest component, facing outwards.
+pub(super) fn extract(field: &Field) -> Mesh {
+    let shape = RuntimeShape::<u32, 3>::new(field.size.map(|n| n as u32));
+    let mut buffer = SurfaceNetsBuffer::default();
+    surface_nets(&field.values, &shape, [0; 3], field.size.map(|n| n as u32 - 1), &mut buffer);
+    let place = |p: &[f32; 3]| field.origin + Vec3::from(*p).as_dvec3() * field.cell;
+    let positions = buffer.positions.iter().map(place).collect();
+    let mut triangles: Vec<[u32; 3]> = buffer.indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect();
+    let mut mesh = Mesh { positions, triangles: Vec::new() };
+    let outward: f64 = triangles.iter().map(|t| volume(&mesh, *t)).sum();
+    if outward < 0.0 {
+        triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
+    }
+    mesh.triangles = triangles;
+    largest(Piece { rim: vec![None; mesh.positions.len()], mesh }).mesh
+}
+
+/// Six times the signed volume of the tetrahedron under a triangle.
+fn volume(mesh: &Mesh, triangle: [u32; 3]) -> f64 {
+    let [a, b, c] = triangle.map(|i| mesh.positions[i as usize]);
+    a.dot(b.cross(c))
+}
+
+/// Cuts at every opening in turn; `past` metres beyond a plane the shell is known to end.
+pub(super) fn cut(mesh: Mesh, openings: &[Opening], past: f64) -> Piece {
+    let mut piece = Piece { rim: vec![None; mesh.positions.len()], mesh };
+    for (index, opening) in openings.iter().enumerate() {
+        piece = cut_one(piece, opening, index, past);
+    }
+    largest(piece)
+}
+
+/// Removes what hangs past one plane, connected to the limb's end.
+fn cut_one(piece: Piece, opening: &Opening, index: usize, past: f64) -> Piece {
+    let Piece { mesh, mut rim } = piece;
+    let height: Vec<f64> = mesh.positions.iter().map(|p| opening.past(*p)).collect();
+    let end = opening.point + opening.normal * (0.7 * past);
+    let bare = (0..height.len()).filter(|&v| height[v] > 0.0);
+    let seed = bare.min_by(|&a, &b| mesh.positions[a].distance(end).total_cmp(&mesh.positions[b].distance(end)));
+    let Some(seed) = seed else { return Piece { mesh, rim } };
+    let mut gone = vec![false; height.len()];
+    let mut around = vec![Vec::new(); height.len()];
+    for t in &mesh.triangles {
+        (0..3).for_each(|k| around[t[k] as usize].extend([t[(k + 1) % 3] as usize, t[(k + 2) % 3] as usize]));
+    }
+    gone[seed] = true;
+    let mut queue = vec![seed];
+    while let Some(vertex) = queue.pop() {
+        for &next in &around[vertex] {
+            if height[next] > 0.0 && !gone[next] {
+                gone[next] = true;
+                queue.push(next);
+            }
+        }
+    }
+    let mut positions = mesh.positions;
+    let mut crossing: BTreeMap<(u32, u32), u32> = BTreeMap::new();
+    let mut cross = |a: u32, b: u32| {
+        *crossing.entry((a.min(b), a.max(b))).or_insert_with(|| {
+            let (ha, hb) = (height[a as usize], height[b as usize]);
+            positions.push(positions[a as usize].lerp(positions[b as usize], ha / (ha - hb)));
+            rim.push(Some(index));
+            positions.len() as u32 - 1
+        })
+    };
+    let mut triangles = Vec::with_capacity(mesh.triangles.len());
+    for triangle in &mesh.triangles {
+        let mut kept = Vec::with_capacity(4);
+        for k in 0..3 {
+            let (a, b) = (triangle[k], triangle[(k + 1) % 3]);
+            if !gone[a as usize] {
+                kept.push(a);
+            }
+            if gone[a as usize] != gone[b as usize] {
+                kept.push(cross(a, b));
+            }
+        }
+        (2..kept.len()).for_each(|k| triangles.push([kept[0], kept[k - 1], kept[k]]));
+    }
+    Piece { mesh: Mesh { positions, triangles }, rim }
+}
+
+/// The connected component of largest area, its vertices renumbered in their order.
+fn largest(piece: Piece) -> Piece {
+    let Piece { mesh, rim } = piece;
+    let mut leader: Vec<usize> = (0..mesh.positions.len()).collect();
+    fn find(leader: &mut [usize], mut v: usize) -> usize {
+        while leader[v] != v {
+            leader[v] = leader[leader[v]];
+            v = leader[v];
+        }
+        v
+    }
+    for t in &mesh.triangles {
+        for k in 1..3 {
+            let (a, b) = (find(&mut leader, t[0] as usize), find(&mut leader, t[k] as usize));
+            leader[a.max(b)] = a.min(b);
+        }
+    }
+    let mut area = vec![0.0; leader.len()];
+    for t in &mesh.triangles {
+        let [a, b, c] = t.map(|i| mesh.positions[i as usize]);
+        area[find(&mut leader, t[0] as usize)] += (b - a).cross(c - a).length();
+    }
+    let best = (0..area.len()).max_by(|&a, &b| area[a].total_cmp(&area[b])).unwrap_or(0);
+    let kept: Vec<[u32; 3]> = mesh.triangles.into_iter().filter(|t| find(&mut leader, t[0] as usize) == best).collect();
+    compact(&mesh.positions, &rim, kept)
+}
+
+/// Drops the vertices no triangle uses.
+pub(super) fn compact(positions: &[DVec3], rim: &[Option<usize>], triangles: Vec<[u32; 3]>) -> Piece {
+    let mut number = vec![u32::MAX; positions.len()];
+    triangles.iter().flatten().for_each(|&v| number[v as usize] = 0);
+    let kept: Vec<usize> = (0..positions.len()).filter(|&v| number[v] == 0).collect();
+    kept.iter().enumerate().for_each(|(index, &v)| number[v] = index as u32);
+    Piece {
+        mesh: Mesh {
+            positions: kept.iter().map(|&v| positions[v]).collect(),
+            triangles: triangles.iter().map(|t| t.map(|v| number[v as usize])).collect(),
+        },
+        rim: kept.iter().map(|&v| rim[v]).collect(),
+    }
+}

@@ -1,0 +1,152 @@
+//! The body on the voxel grid: exact triangle distances near the surface, and what is inside by flooding from outside, so
+//! that open, multi-shell and self-intersecting bodies work.
+
+use super::field::Field;
+use glam::DVec3;
+use rayon::prelude::*;
+
+/// What the field is made of. Triangles as corner positions.
+pub(super) struct Solid<'a> {
+    /// Every triangle of the body.
+    pub triangles: &'a [[DVec3; 3]],
+    /// Per triangle: does the garment cover it?
+    pub covered: &'a [bool],
+    /// Hangs: from a point along a unit direction for some metres the shell never narrows (cloth falls straight).
+    pub hangs: &'a [(DVec3, DVec3, f64)],
+    /// Distance of the garment from the body, metres.
+    pub looseness: f64,
+    /// Standard deviation of the smoothing, metres.
+    pub smoothing: f64,
+}
+
+/// Distance of one voxel: to the body, to the covered part, and whether the nearest triangle is covered.
+#[derive(Clone, Copy)]
+pub(super) struct Near {
+    /// Distance to any triangle, metres, or the reach.
+    pub body: f32,
+    /// Distance to the covered triangles, metres, or the reach.
+    pub covered: f32,
+    /// Is the nearest triangle covered?
+    pub is_covered: bool,
+}
+
+impl Field {
+    /// Exact triangle distances up to `reach`; one slice of the grid per task.
+    pub(super) fn distances(&self, solid: &Solid, reach: f64, wall: f64) -> Vec<Near> {
+        let [nx, ny, nz] = self.size;
+        let far = Near { body: reach as f32, covered: reach as f32, is_covered: false };
+        let mut near = vec![far; nx * ny * nz];
+        // The bare part only has to be a closed wall.
+        let ranges: Vec<[(usize, usize); 3]> = solid
+            .triangles
+            .iter()
+            .zip(solid.covered)
+            .map(|([a, b, c], covered)| {
+                (a.min(*b).min(*c), a.max(*b).max(*c), if *covered { reach } else { wall + self.cell })
+            })
+            .map(|(low, high, reach)| self.range(low - reach, high + reach))
+            .collect();
+        // Bounding spheres spare most of the exact distances.
+        let spheres: Vec<(DVec3, f64)> = solid
+            .triangles
+            .iter()
+            .map(|t| (t[0] + t[1] + t[2]) / 3.0)
+            .zip(solid.triangles)
+            .map(|(centre, t)| (centre, t.iter().fold(0.0, |radius: f64, p| radius.max(p.distance(centre)))))
+            .collect();
+        near.par_chunks_mut(nx * ny).enumerate().for_each(|(z, slice)| {
+            for (index, [xs, ys, zs]) in ranges.iter().enumerate() {
+                if z < zs.0 || z >= zs.1 {
+                    continue;
+                }
+                let (triangle, covered) = (&solid.triangles[index], solid.covered[index]);
+                let (centre, radius) = spheres[index];
+                for y in ys.0..ys.1 {
+                    for x in xs.0..xs.1 {
+                        let cell = &mut slice[y * nx + x];
+                        let point = self.point([x, y, z]);
+                        let bound = if covered { cell.covered } else { cell.body } as f64 + radius;
+                        if point.distance_squared(centre) >= bound * bound {
+                            continue;
+                        }
+                        let distance = point.distance(closest_point(triangle, point)) as f32;
+                        if distance < cell.body {
+                            (cell.body, cell.is_covered) = (distance, covered);
+                        }
+                        if covered && distance < cell.covered {
+                            cell.covered = distance;
+                        }
+                    }
+                }
+            }
+        });
+        near
+    }
+
+    /// Voxels inside the covered part of the body: not reached from the grid's rim through voxels farther than `wall`
+    /// from the body. Deep voxels take the label of the nearest one that has seen a triangle.
+    pub(super) fn interior(&self, near: &mut [Near], wall: f64) -> Vec<bool> {
+        let [nx, ny, nz] = self.size;
+        let reach = near.iter().fold(0.0_f32, |reach, near| reach.max(near.body));
+        let mut outside = vec![false; near.len()];
+        let on_rim = |i: usize| {
+            let (x, y, z) = (i % nx, i / nx % ny, i / (nx * ny));
+            x == 0 || y == 0 || z == 0 || x + 1 == nx || y + 1 == ny || z + 1 == nz
+        };
+        let mut queue: Vec<usize> = (0..near.len()).filter(|&i| on_rim(i)).collect();
+        queue.iter().for_each(|&i| outside[i] = true);
+        while let Some(i) = queue.pop() {
+            for j in self.neighbours(i) {
+                if !outside[j] && near[j].body > wall as f32 {
+                    outside[j] = true;
+                    queue.push(j);
+                }
+            }
+        }
+        let mut queue: Vec<usize> = (0..near.len()).filter(|&i| !outside[i] && near[i].body < reach).collect();
+        let mut known: Vec<bool> = near.iter().map(|near| near.body < reach).collect();
+        let mut next = 0;
+        while next < queue.len() {
+            for j in self.neighbours(queue[next]) {
+                if !known[j] && !outside[j] {
+                    known[j] = true;
+                    near[j].is_covered = near[queue[next]].is_covered;
+                    queue.push(j);
+                }
+            }
+            next += 1;
+        }
+        near.iter().zip(outside).map(|(near, outside)| !outside && near.is_covered && near.body > wall as f32).collect()
+    }
+}
+
+/// The point of a triangle nearest to `p` (by its Voronoi regions).
+pub(super) fn closest_point(&[a, b, c]: &[DVec3; 3], p: DVec3) -> DVec3 {
+    let (ab, ac, ap) = (b - a, c - a, p - a);
+    let (d1, d2) = (ab.dot(ap), ac.dot(ap));
+    if d1 <= 0.0 && d2 <= 0.0 {
+        return a;
+    }
+    let (d3, d4) = (ab.dot(p - b), ac.dot(p - b));
+    if d3 >= 0.0 && d4 <= d3 {
+        return b;
+    }
+    let (d5, d6) = (ab.dot(p - c), ac.dot(p - c));
+    if d6 >= 0.0 && d5 <= d6 {
+        return c;
+    }
+    let vc = d1 * d4 - d3 * d2;
+    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
+        return a + ab * (d1 / (d1 - d3));
+    }
+    let vb = d5 * d2 - d1 * d6;
+    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
+        return a + ac * (d2 / (d2 - d6));
+    }
+    let va = d3 * d6 - d5 * d4;
+    if va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0 {
+        return b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)));
+    }
+    let scale = 1.0 / (va + vb + vc);
+    a + ab * (vb * scale) + ac * (vc * scale)
+}
