@@ -1,10 +1,12 @@
 //! Authoring: rigged character + garment + motion -> quasi-static simulation -> training -> evaluation -> model file.
 
+pub mod character;
 pub mod dataset;
 mod error;
 pub mod evaluate;
 pub mod gltf;
 pub mod ground_truth;
+pub mod motion;
 pub mod rig;
 pub mod simulate;
 pub mod synthetic;
