@@ -9,6 +9,7 @@ mod surface;
 mod weights;
 
 pub use figure::{Figure, JointRow, Part};
+pub use loft::smoothstep;
 
 use crate::motion;
 use crate::rig::{Character, Mesh, Surface};
