@@ -51,7 +51,8 @@ impl Loft {
         let slopes = clamped_slopes(&sections);
         let frame = DMat3::from_cols(front.cross(along), front, along);
         let bounds = [start; 2];
-        Loft { start, frame, sections, slopes, bounds, caps, exponent: 2.0, blend: 0.03, edge: 0.02, joints: vec![] }.enclose()
+        Loft { start, frame, sections, slopes, bounds, caps, exponent: 2.0, blend: 0.03, edge: 0.02, joints: vec![] }
+            .enclose()
     }
 
     /// First-order estimate of the signed distance of `p`, metres, negative inside.
@@ -96,7 +97,8 @@ impl Loft {
     fn enclose(mut self) -> Loft {
         let reach = |s: &Section| s.side.max(s.front.max(s.back) + s.centre.abs()) * 1.1;
         let radius = self.sections.iter().map(reach).fold(0.0, f64::max);
-        let (first, last) = (self.sections[0].at - self.caps[0], self.sections[self.sections.len() - 1].at + self.caps[1]);
+        let (first, last) =
+            (self.sections[0].at - self.caps[0], self.sections[self.sections.len() - 1].at + self.caps[1]);
         let (a, b) = (self.start + self.frame.z_axis * first, self.start + self.frame.z_axis * last);
         self.bounds = [a.min(b) - radius, a.max(b) + radius];
         self

@@ -9,7 +9,7 @@ const FRONT: [f64; 3] = [0.0, 0.0, 1.0];
 const ARM: [f64; 3] = [0.7431, -0.6691, 0.0];
 
 /// The table of the mannequin.
-pub const MANNEQUIN: Figure = Figure { joints: JOINTS, parts: PARTS, cell: 0.0055, colour: [0.80, 0.70, 0.60] };
+pub const MANNEQUIN: Figure = Figure { joints: JOINTS, parts: PARTS, cell: 0.006, colour: [0.80, 0.70, 0.60] };
 
 const JOINTS: &[JointRow] = &[
     ("Hips", "", [0.0, 0.965, -0.005]),
@@ -49,17 +49,23 @@ const PARTS: &[Part] = &[
         exponent: 2.2,
         blend: 0.03,
         edge: 0.022,
-        joints: &[("Hips", 0.0, 0.01), ("Spine", 0.19, 0.07), ("Spine1", 0.30, 0.07), ("Spine2", 0.415, 0.07), ("Neck", 0.605, 0.04)],
+        joints: &[
+            ("Hips", 0.0, 0.01),
+            ("Spine", 0.19, 0.07),
+            ("Spine1", 0.30, 0.07),
+            ("Spine2", 0.415, 0.07),
+            ("Neck", 0.605, 0.04),
+        ],
     },
     // Breast.
     Part {
-        start: [0.066, 1.305, 0.052],
-        along: [0.35, -0.20, 0.25],
+        start: [0.064, 1.308, 0.044],
+        along: [0.45, -0.30, 0.06],
         front: FRONT,
-        sections: &[[-0.010, 0.0, 0.052, 0.030, 0.030], [0.010, 0.0, 0.054, 0.032, 0.030]],
-        caps: [0.055, 0.040],
+        sections: &[[-0.012, 0.0, 0.058, 0.036, 0.030], [0.012, 0.0, 0.058, 0.038, 0.030]],
+        caps: [0.056, 0.052],
         exponent: 2.0,
-        blend: 0.055,
+        blend: 0.065,
         edge: 0.020,
         joints: &[("Spine2", 0.0, 0.01), ("LeftShoulder", 0.2, 0.01)],
     },
@@ -83,8 +89,8 @@ const PARTS: &[Part] = &[
         sections: &[
             [0.00, 0.0, 0.066, 0.056, 0.060],
             [0.06, 0.0, 0.054, 0.051, 0.053],
-            [0.11, 0.0, 0.0475, 0.047, 0.050],
-            [0.20, 0.0, 0.049, 0.048, 0.052],
+            [0.11, 0.0, 0.0455, 0.045, 0.049],
+            [0.20, 0.0, 0.047, 0.046, 0.052],
         ],
         caps: [0.03, 0.02],
         exponent: 2.0,
@@ -92,29 +98,40 @@ const PARTS: &[Part] = &[
         edge: 0.016,
         joints: &[("Spine2", 0.0, 0.01), ("Neck", 0.055, 0.045), ("Head", 0.150, 0.035)],
     },
-    // Head: an egg, chin forward.
+    // Head: an egg.
     Part {
         start: [0.0, 1.530, 0.008],
         along: UP,
         front: FRONT,
-        sections: &[
-            [0.022, 0.024, 0.037, 0.058, 0.050],
-            [0.055, 0.014, 0.055, 0.078, 0.074],
-            [0.095, 0.002, 0.0680, 0.091, 0.094],
-            [0.142, -0.006, 0.0745, 0.095, 0.104],
-        ],
-        caps: [0.024, 0.092],
+        sections: &[[0.118, -0.002, 0.0742, 0.0920, 0.1015], [0.144, -0.005, 0.0748, 0.0940, 0.1035]],
+        caps: [0.124, 0.090],
         exponent: 2.1,
-        blend: 0.018,
+        blend: 0.026,
         edge: 0.013,
         joints: &[("Neck", 0.0, 0.01), ("Head", 0.0, 0.01)],
+    },
+    // Chin.
+    Part {
+        start: [0.0, 1.556, 0.050],
+        along: [0.0, -0.4, 1.0],
+        front: UP,
+        sections: &[[-0.012, 0.0, 0.028, 0.026, 0.024], [0.004, 0.0, 0.026, 0.026, 0.024]],
+        caps: [0.03, 0.026],
+        exponent: 2.0,
+        blend: 0.06,
+        edge: 0.013,
+        joints: &[("Head", 0.0, 0.01)],
     },
     // Ridge of the nose: gives the face a direction, no more.
     Part {
         start: [0.0, 1.672, 0.088],
         along: [0.0, -0.056, 0.010],
         front: FRONT,
-        sections: &[[0.0, 0.0, 0.006, 0.006, 0.012], [0.028, 0.0, 0.007, 0.010, 0.012], [0.046, 0.0, 0.0085, 0.012, 0.012]],
+        sections: &[
+            [0.0, 0.0, 0.006, 0.006, 0.012],
+            [0.028, 0.0, 0.007, 0.009, 0.012],
+            [0.046, 0.0, 0.008, 0.0105, 0.012],
+        ],
         caps: [0.030, 0.009],
         exponent: 2.0,
         blend: 0.032,
@@ -126,7 +143,11 @@ const PARTS: &[Part] = &[
         start: [0.020, 1.468, -0.042],
         along: [0.150, -0.072, 0.016],
         front: FRONT,
-        sections: &[[0.0, 0.0, 0.026, 0.032, 0.036], [0.07, 0.0, 0.034, 0.042, 0.044], [0.15, 0.0, 0.044, 0.050, 0.050]],
+        sections: &[
+            [0.0, 0.0, 0.026, 0.032, 0.036],
+            [0.07, 0.0, 0.034, 0.042, 0.044],
+            [0.15, 0.0, 0.044, 0.050, 0.050],
+        ],
         caps: [0.03, 0.03],
         exponent: 2.0,
         blend: 0.06,
@@ -153,7 +174,12 @@ const PARTS: &[Part] = &[
         exponent: 2.0,
         blend: 0.045,
         edge: 0.019,
-        joints: &[("LeftShoulder", -0.05, 0.02), ("LeftArm", 0.010, 0.065), ("LeftForeArm", 0.282, 0.048), ("LeftHand", 0.538, 0.035)],
+        joints: &[
+            ("LeftShoulder", -0.05, 0.02),
+            ("LeftArm", 0.010, 0.065),
+            ("LeftForeArm", 0.282, 0.048),
+            ("LeftHand", 0.538, 0.035),
+        ],
     },
     // Palm; thin across, thumb in front.
     Part {
@@ -171,19 +197,23 @@ const PARTS: &[Part] = &[
         edge: 0.011,
         joints: &[("LeftForeArm", -0.05, 0.01), ("LeftHand", 0.0, 0.035)],
     },
-    finger(0.0085, 0.99, 0.094),
-    finger(-0.0100, 1.0, 0.104),
-    finger(-0.0285, 1.0, 0.096),
-    finger(-0.0465, 0.92, 0.075),
+    finger(0.0065, 1.00, INDEX),
+    finger(-0.0115, 1.01, MIDDLE),
+    finger(-0.0295, 1.00, INDEX),
+    finger(-0.0470, 0.96, LITTLE),
     // Thumb.
     Part {
         start: [0.5775, 1.0110, 0.004],
-        along: [0.066, -0.066, 0.032],
+        along: [0.060, -0.060, 0.050],
         front: FRONT,
-        sections: &[[0.0, 0.0, 0.015, 0.016, 0.016], [0.04, 0.0, 0.0125, 0.0125, 0.0125], [0.080, 0.0, 0.0088, 0.0092, 0.0092]],
+        sections: &[
+            [0.0, 0.0, 0.015, 0.016, 0.016],
+            [0.04, 0.0, 0.0125, 0.0125, 0.0125],
+            [0.080, 0.0, 0.0088, 0.0092, 0.0092],
+        ],
         caps: [0.015, 0.010],
         exponent: 2.0,
-        blend: 0.016,
+        blend: 0.024,
         edge: 0.009,
         joints: &[("LeftHand", 0.0, 0.01)],
     },
@@ -209,7 +239,12 @@ const PARTS: &[Part] = &[
         exponent: 2.05,
         blend: 0.045,
         edge: 0.022,
-        joints: &[("Hips", -0.02, 0.02), ("LeftUpLeg", 0.050, 0.085), ("LeftLeg", 0.450, 0.062), ("LeftFoot", 0.862, 0.040)],
+        joints: &[
+            ("Hips", -0.02, 0.02),
+            ("LeftUpLeg", 0.050, 0.085),
+            ("LeftLeg", 0.450, 0.062),
+            ("LeftFoot", 0.862, 0.040),
+        ],
     },
     // Foot, heel to toes; the sections' front is up, and centre - back = 0 at the ground.
     Part {
@@ -231,24 +266,24 @@ const PARTS: &[Part] = &[
     },
 ];
 
-/// A finger whose knuckle lies at depth `z`, `length` metres from the knuckle to the start of its tip.
+const INDEX: &[[f64; 5]] =
+    &[[0.0, 0.0, 0.0108, 0.0108, 0.0108], [0.050, 0.0, 0.0096, 0.0102, 0.0102], [0.097, 0.0, 0.0076, 0.0092, 0.0092]];
+const MIDDLE: &[[f64; 5]] =
+    &[[0.0, 0.0, 0.0108, 0.0108, 0.0108], [0.055, 0.0, 0.0096, 0.0102, 0.0102], [0.107, 0.0, 0.0076, 0.0092, 0.0092]];
+const LITTLE: &[[f64; 5]] =
+    &[[0.0, 0.0, 0.0098, 0.0104, 0.0104], [0.040, 0.0, 0.0088, 0.0096, 0.0096], [0.076, 0.0, 0.0070, 0.0084, 0.0084]];
+
+/// A finger whose knuckle lies at depth `z`, a share `knuckle` of the way along the palm.
 /// The four touch, as on a shop-window figure: sleeves slide over them and the grid need not resolve gaps.
-const fn finger(z: f64, scale: f64, length: f64) -> Part {
-    let sections: &'static [[f64; 5]] = if length > 0.1 {
-        &[[0.0, 0.0, 0.0105, 0.0105, 0.0105], [0.055, 0.0, 0.0095, 0.0100, 0.0100], [0.104, 0.0, 0.0072, 0.0080, 0.0080]]
-    } else if length > 0.08 {
-        &[[0.0, 0.0, 0.0105, 0.0105, 0.0105], [0.050, 0.0, 0.0095, 0.0100, 0.0100], [0.095, 0.0, 0.0072, 0.0080, 0.0080]]
-    } else {
-        &[[0.0, 0.0, 0.0098, 0.0098, 0.0098], [0.040, 0.0, 0.0088, 0.0094, 0.0094], [0.075, 0.0, 0.0064, 0.0072, 0.0072]]
-    };
+const fn finger(z: f64, knuckle: f64, sections: &'static [[f64; 5]]) -> Part {
     Part {
-        start: [0.5640 + 0.0446 * scale, 1.0267 - 0.0401 * scale, z],
-        along: [0.7431, -0.6691, -0.04 * (z + 0.02) / 0.03],
+        start: [0.5640 + 0.0446 * knuckle, 1.0267 - 0.0401 * knuckle, z],
+        along: ARM,
         front: FRONT,
         sections,
-        caps: [0.01, 0.009],
+        caps: [0.01, 0.010],
         exponent: 2.0,
-        blend: 0.007,
+        blend: 0.009,
         edge: 0.0085,
         joints: &[("LeftHand", 0.0, 0.01)],
     }

@@ -23,7 +23,8 @@ const FIGURES: &[(&str, Figure)] = &[("mannequin", mannequin::MANNEQUIN)];
 pub fn character(name: &str) -> Result<Character> {
     let known: Vec<&str> = FIGURES.iter().map(|(known, _)| *known).collect();
     let found = FIGURES.iter().find(|(known, _)| *known == name);
-    let (_, figure) = found.ok_or_else(|| Error::Character(format!("wanted one of {}, found {name:?}", known.join(", "))))?;
+    let (_, figure) =
+        found.ok_or_else(|| Error::Character(format!("wanted one of {}, found {name:?}", known.join(", "))))?;
     let mut character = build(figure);
     character.clips = motion::clips(&character, motion::RATE)?;
     Ok(character)
@@ -43,7 +44,11 @@ pub fn build(figure: &Figure) -> Character {
 /// Wanted edge length at `p`, metres: that of the lofts around it, nearer ones counting more.
 fn edge_length(lofts: &[loft::Loft], p: DVec3) -> f64 {
     let share = |loft: &loft::Loft| (loft.edge, (-loft.distance(p).max(0.0) / 0.01).exp());
-    let (sum, weight) = lofts.iter().filter(|loft| loft.near(p)).map(share).fold((0.0, 1e-12), |(s, w), (edge, k)| (s + edge * k, w + k));
+    let (sum, weight) = lofts
+        .iter()
+        .filter(|loft| loft.near(p))
+        .map(share)
+        .fold((0.0, 1e-12), |(s, w), (edge, k)| (s + edge * k, w + k));
     if weight > 1e-9 { sum / weight } else { 0.02 }
 }
 
@@ -56,3 +61,6 @@ fn drawn(body: &Mesh, colour: [f32; 3]) -> Surface {
         colour: vec![colour; body.triangles.len()],
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -129,7 +129,8 @@ impl Remesher<'_> {
         if ring_a.iter().chain(&ring_b).any(far) {
             return;
         }
-        let touched: Vec<u32> = self.fans[a as usize].iter().chain(&self.fans[b as usize]).copied().filter(|t| !pair.contains(t)).collect();
+        let touched: Vec<u32> =
+            self.fans[a as usize].iter().chain(&self.fans[b as usize]).copied().filter(|t| !pair.contains(t)).collect();
         let turned = |&index: &u32| {
             let Some(triangle) = self.triangles[index as usize] else { return false };
             let old = triangle.map(|v| self.positions[v as usize]);
@@ -160,8 +161,11 @@ impl Remesher<'_> {
             if after >= before || valence(a) <= 3 || valence(b) <= 3 || c == d || self.neighbours(c).contains(&d) {
                 continue;
             }
-            let (Some(first), Some(second)) = (self.triangles[s as usize], self.triangles[t as usize]) else { continue };
-            let (new_first, new_second) = (first.map(|v| if v == b { d } else { v }), second.map(|v| if v == a { c } else { v }));
+            let (Some(first), Some(second)) = (self.triangles[s as usize], self.triangles[t as usize]) else {
+                continue;
+            };
+            let (new_first, new_second) =
+                (first.map(|v| if v == b { d } else { v }), second.map(|v| if v == a { c } else { v }));
             let at = |t: [u32; 3]| normal(t.map(|v| self.positions[v as usize]));
             let old = (at(first) + at(second)).normalize_or_zero();
             let flat = |t: [u32; 3]| at(t).normalize_or_zero().dot(old) < 0.5;
@@ -177,7 +181,8 @@ impl Remesher<'_> {
     fn relax(&mut self) {
         let mut moved = self.positions.clone();
         for v in 0..self.positions.len() as u32 {
-            let live: Vec<[u32; 3]> = self.fans[v as usize].iter().filter_map(|&t| self.triangles[t as usize]).collect();
+            let live: Vec<[u32; 3]> =
+                self.fans[v as usize].iter().filter_map(|&t| self.triangles[t as usize]).collect();
             if live.is_empty() {
                 continue;
             }
@@ -186,7 +191,8 @@ impl Remesher<'_> {
             // Weighted so that a finer wanted edge length nearby draws vertices to it.
             let pull = |&u: &u32| (self.positions[u as usize], 1.0 / self.wanted[u as usize]);
             let (sum, weight) = ring.iter().map(pull).fold((DVec3::ZERO, 0.0), |(s, w), (q, k)| (s + q * k, w + k));
-            let up: DVec3 = live.iter().map(|t| normal(t.map(|u| self.positions[u as usize]))).sum::<DVec3>().normalize_or_zero();
+            let up: DVec3 =
+                live.iter().map(|t| normal(t.map(|u| self.positions[u as usize]))).sum::<DVec3>().normalize_or_zero();
             let step = sum / weight - p;
             moved[v as usize] = (self.project)(p + 0.7 * (step - up * up.dot(step)));
         }

@@ -63,7 +63,8 @@ fn strongest(row: &[f64]) -> SkinWeights {
     let mut sorted: Vec<(usize, f64)> = row.iter().copied().enumerate().filter(|&(_, w)| w > 0.0).collect();
     sorted.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
     let floor = sorted.get(MOST).map_or(0.0, |&(_, w)| w).max(2e-3);
-    let mut kept: SkinWeights = sorted.into_iter().take(MOST).map(|(j, w)| (j, w - floor)).filter(|&(_, w)| w > 0.0).collect();
+    let mut kept: SkinWeights =
+        sorted.into_iter().take(MOST).map(|(j, w)| (j, w - floor)).filter(|&(_, w)| w > 0.0).collect();
     let sum: f64 = kept.iter().map(|&(_, w)| w).sum();
     kept.iter_mut().for_each(|(_, w)| *w /= sum);
     kept

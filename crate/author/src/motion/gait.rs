@@ -59,7 +59,9 @@ impl Gait {
     /// Posture at `time` seconds.
     pub fn at(&self, time: f64) -> Posture {
         let foot = |phase: f64| {
-            let row = |&[share, z, y, pitch]: &[f64; 4]| (share, Posture { feet: [[0.0, y, z, 5.0, pitch]; 2], ..Posture::default() });
+            let row = |&[share, z, y, pitch]: &[f64; 4]| {
+                (share, Posture { feet: [[0.0, y, z, 5.0, pitch]; 2], ..Posture::default() })
+            };
             let keys: Vec<(f64, Posture)> = self.foot.iter().map(row).collect();
             through(&keys, 1.0, phase).feet[0]
         };

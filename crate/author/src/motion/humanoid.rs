@@ -42,7 +42,7 @@ struct Leg {
     hang: [DQuat; 2],
     /// Lengths of thigh and shank, metres.
     lengths: [f64; 2],
-    /// Ankle, and the points of heel and ball on the floor, canonical, metres.
+    /// Ankle, the heel on the floor and the joint of the toes, canonical, metres: the foot rolls over the latter two.
     ankle: DVec3,
     heel: DVec3,
     ball: DVec3,
@@ -53,24 +53,46 @@ impl Humanoid {
     pub fn new(character: &Character) -> Result<Humanoid> {
         let plain = |name: &str| name.rsplit([':', '|']).next().unwrap_or(name).to_string();
         let find = |wanted: &str| character.joints.iter().position(|joint| plain(&joint.name) == wanted);
-        let need = |wanted: &str| find(wanted).ok_or_else(|| Error::Character(format!("wanted a joint named {wanted} to move, found none")));
+        let need = |wanted: &str| {
+            find(wanted).ok_or_else(|| Error::Character(format!("wanted a joint named {wanted} to move, found none")))
+        };
         let bind = character.canonical_pose();
         let place = |joint: usize| bind[joint].translation;
         let floor = character.body.positions.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
         let floor = if floor.is_finite() { floor } else { 0.0 };
-        let hang = |from: usize, to: usize| DQuat::from_rotation_arc((place(to) - place(from)).normalize_or(DVec3::NEG_Y), DVec3::NEG_Y);
+        let hang = |from: usize, to: usize| {
+            DQuat::from_rotation_arc((place(to) - place(from)).normalize_or(DVec3::NEG_Y), DVec3::NEG_Y)
+        };
         let arm = |side: &str| -> Result<Arm> {
-            let [upper, fore, hand] = [need(&format!("{side}Arm"))?, need(&format!("{side}ForeArm"))?, need(&format!("{side}Hand"))?];
-            Ok(Arm { shoulder: find(&format!("{side}Shoulder")), upper, fore, hand, hang: [hang(upper, fore), hang(fore, hand)] })
+            let [upper, fore, hand] =
+                [need(&format!("{side}Arm"))?, need(&format!("{side}ForeArm"))?, need(&format!("{side}Hand"))?];
+            Ok(Arm {
+                shoulder: find(&format!("{side}Shoulder")),
+                upper,
+                fore,
+                hand,
+                hang: [hang(upper, fore), hang(fore, hand)],
+            })
         };
         let leg = |side: &str| -> Result<Leg> {
-            let [upper, lower, foot] = [need(&format!("{side}UpLeg"))?, need(&format!("{side}Leg"))?, need(&format!("{side}Foot"))?];
+            let [upper, lower, foot] =
+                [need(&format!("{side}UpLeg"))?, need(&format!("{side}Leg"))?, need(&format!("{side}Foot"))?];
             let toe = find(&format!("{side}ToeBase"));
             let ankle = place(foot);
-            let ball = toe.map_or(ankle + DVec3::Z * 0.12, place).with_y(floor);
+            let ball = toe.map_or((ankle + DVec3::Z * 0.12).with_y(floor), place);
             let heel = (ankle - DVec3::Z * 0.25 * (ball.z - ankle.z)).with_y(floor);
             let lengths = [place(upper).distance(place(lower)), place(lower).distance(ankle)];
-            Ok(Leg { upper, lower, foot, toe, hang: [hang(upper, lower), hang(lower, foot)], lengths, ankle, heel, ball })
+            Ok(Leg {
+                upper,
+                lower,
+                foot,
+                toe,
+                hang: [hang(upper, lower), hang(lower, foot)],
+                lengths,
+                ankle,
+                heel,
+                ball,
+            })
         };
         let legs = [leg("Left")?, leg("Right")?];
         Ok(Humanoid {
@@ -135,7 +157,14 @@ impl Humanoid {
 }
 
 impl Arm {
-    fn place(&self, chest: DQuat, [raise, swing, twist, elbow, wrist]: [f64; 5], side: f64, turn: &mut [DQuat], world: &mut [Option<DQuat>]) {
+    fn place(
+        &self,
+        chest: DQuat,
+        [raise, swing, twist, elbow, wrist]: [f64; 5],
+        side: f64,
+        turn: &mut [DQuat],
+        world: &mut [Option<DQuat>],
+    ) {
         let [raise, swing, twist, elbow, wrist] = [raise, swing, twist, elbow, wrist].map(f64::to_radians);
         // The collar bone takes part once the arm rises, up to 24° with the arm overhead.
         let lift = (raise.cos() * swing.cos()).clamp(-1.0, 1.0);
@@ -143,7 +172,10 @@ impl Arm {
         if let Some(shoulder) = self.shoulder {
             turn[shoulder] = DQuat::from_rotation_z(side * share * share * (3.0 - 2.0 * share) * 0.42);
         }
-        let upper = chest * DQuat::from_rotation_x(-swing) * DQuat::from_rotation_z(side * raise) * DQuat::from_rotation_y(side * twist);
+        let upper = chest
+            * DQuat::from_rotation_x(-swing)
+            * DQuat::from_rotation_z(side * raise)
+            * DQuat::from_rotation_y(side * twist);
         let fore = upper * DQuat::from_rotation_x(-elbow);
         world[self.upper] = Some(upper * self.hang[0]);
         world[self.fore] = Some(fore * self.hang[1]);
@@ -152,10 +184,21 @@ impl Arm {
 }
 
 impl Leg {
-    fn place(&self, hip: DVec3, heading: DQuat, knee: f64, [x, y, z, yaw, pitch]: [f64; 5], side: f64, leg: f64, world: &mut [Option<DQuat>]) {
+    fn place(
+        &self,
+        hip: DVec3,
+        heading: DQuat,
+        knee: f64,
+        [x, y, z, yaw, pitch]: [f64; 5],
+        side: f64,
+        leg: f64,
+        world: &mut [Option<DQuat>],
+    ) {
+        // Splines overshoot below the floor where a foot lands; a soft maximum keeps it above, -3 mm at the worst.
+        let y = 0.5 * (y + y.hypot(0.006)) - 0.003;
         let turned = heading * DQuat::from_rotation_y(side * yaw.to_radians());
         // A soft split of the pitch: heel up rolls over the ball, toes up over the heel, smoothly through zero.
-        let up = 3.0 * (pitch / 3.0).exp().ln_1p();
+        let up = pitch.exp().ln_1p();
         let (up, down) = (DQuat::from_rotation_x(up.to_radians()), DQuat::from_rotation_x((pitch - up).to_radians()));
         let ball = heading * self.ball + heading * DVec3::new(side * x, y, z) * leg;
         let ankle = ball + turned * (up * (self.heel - self.ball + down * (self.ankle - self.heel)));

@@ -1,6 +1,7 @@
 //! Motion of any humanoid, generated: posture(t) -> G_j(t), each clip closed and C¹; simulation.md §5.
 //! Feet stay on the floor by inverse kinematics; the root stays within a metre.
 
+mod exercises;
 mod gait;
 mod humanoid;
 mod moves;
@@ -32,7 +33,9 @@ pub fn clips(character: &Character, rate: f64) -> Result<Vec<Clip>> {
     }
     for seed in 1..=2 {
         let keys = wander::keys(seed);
-        clips.push(sample(&humanoid, &format!("wander {seed}"), wander::PERIOD, rate, |time| through(&keys, wander::PERIOD, time)));
+        clips.push(sample(&humanoid, &format!("wander {seed}"), wander::PERIOD, rate, |time| {
+            through(&keys, wander::PERIOD, time)
+        }));
     }
     Ok(clips)
 }
@@ -43,3 +46,6 @@ fn sample(humanoid: &Humanoid, name: &str, period: f64, rate: f64, posture: impl
     let poses = (0..=frames as usize).map(|frame| humanoid.pose(&posture(period * frame as f64 / frames))).collect();
     Clip { name: name.to_string(), rate: frames / period, poses }
 }
+
+#[cfg(test)]
+mod tests;
