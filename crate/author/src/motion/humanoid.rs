@@ -26,6 +26,8 @@ pub struct Humanoid {
 }
 
 struct Arm {
+    /// 1 on the left (+X), -1 on the right.
+    side: f64,
     shoulder: Option<usize>,
     upper: usize,
     fore: usize,
@@ -35,6 +37,8 @@ struct Arm {
 }
 
 struct Leg {
+    /// 1 on the left (+X), -1 on the right.
+    side: f64,
     upper: usize,
     lower: usize,
     foot: usize,
@@ -60,39 +64,20 @@ impl Humanoid {
         let place = |joint: usize| bind[joint].translation;
         let floor = character.body.positions.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
         let floor = if floor.is_finite() { floor } else { 0.0 };
-        let hang = |from: usize, to: usize| {
-            DQuat::from_rotation_arc((place(to) - place(from)).normalize_or(DVec3::NEG_Y), DVec3::NEG_Y)
-        };
+        let side_of = |side: &str| if side == "Left" { 1.0 } else { -1.0 };
         let arm = |side: &str| -> Result<Arm> {
             let [upper, fore, hand] =
                 [need(&format!("{side}Arm"))?, need(&format!("{side}ForeArm"))?, need(&format!("{side}Hand"))?];
-            Ok(Arm {
-                shoulder: find(&format!("{side}Shoulder")),
-                upper,
-                fore,
-                hand,
-                hang: [hang(upper, fore), hang(fore, hand)],
-            })
+            let shoulder = find(&format!("{side}Shoulder"));
+            let hang = [hang(&bind, upper, fore), hang(&bind, fore, hand)];
+            Ok(Arm { side: side_of(side), shoulder, upper, fore, hand, hang })
         };
         let leg = |side: &str| -> Result<Leg> {
-            let [upper, lower, foot] =
-                [need(&format!("{side}UpLeg"))?, need(&format!("{side}Leg"))?, need(&format!("{side}Foot"))?];
-            let toe = find(&format!("{side}ToeBase"));
-            let ankle = place(foot);
-            let ball = toe.map_or((ankle + DVec3::Z * 0.12).with_y(floor), place);
-            let heel = (ankle - DVec3::Z * 0.25 * (ball.z - ankle.z)).with_y(floor);
-            let lengths = [place(upper).distance(place(lower)), place(lower).distance(ankle)];
-            Ok(Leg {
-                upper,
-                lower,
-                foot,
-                toe,
-                hang: [hang(upper, lower), hang(lower, foot)],
-                lengths,
-                ankle,
-                heel,
-                ball,
-            })
+            let joints = [need(&format!("{side}UpLeg"))?, need(&format!("{side}Leg"))?, need(&format!("{side}Foot"))?];
+            let leg = Leg::measure(side_of(side), joints, find(&format!("{side}ToeBase")), &bind, floor);
+            let straight = leg.lengths.iter().all(|&length| length > 1e-6 && length.is_finite());
+            let wanted = format!("wanted a {side} leg with two bones of some length, found {:?} m", leg.lengths);
+            if straight { Ok(leg) } else { Err(Error::Character(wanted)) }
         };
         let legs = [leg("Left")?, leg("Right")?];
         Ok(Humanoid {
@@ -119,15 +104,18 @@ impl Humanoid {
         spread(&self.head, posture.head, &mut turn);
         let chest = self.spine.iter().fold(heading * euler(posture.tilt), |chest, &joint| chest * turn[joint]);
         for (side, arm) in self.arms.iter().enumerate() {
-            arm.place(chest, posture.arms[side], sign(side), &mut turn, &mut world);
+            arm.place(chest, posture.arms[side], &mut turn, &mut world);
         }
         let rest = self.bind[self.hips].translation;
         let moved = DVec3::from_array(posture.hips) * self.leg_length;
         let hips = (heading * (rest.with_y(0.0) + moved.with_y(0.0))).with_y(rest.y + moved.y);
         for (side, leg) in self.legs.iter().enumerate() {
             let hip = hips + world[self.hips].unwrap_or(heading) * (self.bind[leg.upper].translation - rest);
-            let knee = 0.5 * posture.tilt[1];
-            leg.place(hip, heading, knee, posture.feet[side], sign(side), self.leg_length, &mut world);
+            let knee = 0.5 * posture.tilt[1].to_radians();
+            let [x, y, z, yaw, pitch] = posture.feet[side];
+            let length = self.leg_length;
+            let foot = [x * length, soft_floor(y) * length, z * length, yaw, pitch];
+            leg.place(hip, heading, knee, foot, &mut world);
         }
         self.assemble(hips, &turn, &world)
     }
@@ -161,11 +149,11 @@ impl Arm {
         &self,
         chest: DQuat,
         [raise, swing, twist, elbow, wrist]: [f64; 5],
-        side: f64,
         turn: &mut [DQuat],
         world: &mut [Option<DQuat>],
     ) {
         let [raise, swing, twist, elbow, wrist] = [raise, swing, twist, elbow, wrist].map(f64::to_radians);
+        let side = self.side;
         // The collar bone takes part once the arm rises, up to 24° with the arm overhead.
         let lift = (raise.cos() * swing.cos()).clamp(-1.0, 1.0);
         let share = ((0.9 - lift) / 1.9).max(0.0);
@@ -184,32 +172,41 @@ impl Arm {
 }
 
 impl Leg {
+    /// A leg of thigh, shank and foot joint in the canonical pose.
+    fn measure(side: f64, [upper, lower, foot]: [usize; 3], toe: Option<usize>, bind: &[DAffine3], floor: f64) -> Leg {
+        let place = |joint: usize| bind[joint].translation;
+        let ankle = place(foot);
+        let ball = toe.map_or((ankle + DVec3::Z * 0.12).with_y(floor), place);
+        let heel = (ankle - DVec3::Z * 0.25 * (ball.z - ankle.z)).with_y(floor);
+        let lengths = [place(upper).distance(place(lower)), place(lower).distance(ankle)];
+        let hang = [hang(bind, upper, lower), hang(bind, lower, foot)];
+        Leg { side, upper, lower, foot, toe, hang, lengths, ankle, heel, ball }
+    }
+
+    /// `knee` turns the knee inward or outward with the hips, radians; the foot's `x, y, z` are metres here.
     fn place(
         &self,
         hip: DVec3,
         heading: DQuat,
         knee: f64,
         [x, y, z, yaw, pitch]: [f64; 5],
-        side: f64,
-        leg: f64,
         world: &mut [Option<DQuat>],
     ) {
-        // Splines overshoot below the floor where a foot lands; a soft maximum keeps it above, -3 mm at the worst.
-        let y = 0.5 * (y + y.hypot(0.006)) - 0.003;
+        let side = self.side;
         let turned = heading * DQuat::from_rotation_y(side * yaw.to_radians());
         // A soft split of the pitch: heel up rolls over the ball, toes up over the heel, smoothly through zero.
-        let up = pitch.exp().ln_1p();
+        let up = pitch.max(0.0) + (-pitch.abs()).exp().ln_1p();
         let (up, down) = (DQuat::from_rotation_x(up.to_radians()), DQuat::from_rotation_x((pitch - up).to_radians()));
-        let ball = heading * self.ball + heading * DVec3::new(side * x, y, z) * leg;
+        let ball = heading * self.ball + heading * DVec3::new(side * x, y, z);
         let ankle = ball + turned * (up * (self.heel - self.ball + down * (self.ankle - self.heel)));
         let foot = turned * up * down;
         // Toes stay flat under a lifted heel while the foot is near the floor.
-        let flat = 1.0 / (1.0 + (y / 0.06).max(0.0).powi(2));
+        let flat = 1.0 / (1.0 + (y / 0.05).max(0.0).powi(2));
         let [thigh, shank] = self.lengths;
         let reach = thigh + shank;
         let distance = soft_limit(hip.distance(ankle) / reach).max((thigh - shank).abs() / reach + 0.05) * reach;
         let towards = (ankle - hip).normalize_or(DVec3::NEG_Y);
-        let yaw = DQuat::from_rotation_y((0.7 * side * yaw + knee).to_radians());
+        let yaw = DQuat::from_rotation_y(0.7 * side * yaw.to_radians() + knee);
         let pole = heading * DQuat::from_rotation_arc(DVec3::NEG_Y, heading.inverse() * towards) * yaw * DVec3::Z;
         let cosine = (thigh * thigh + distance * distance - shank * shank) / (2.0 * thigh * distance);
         let bend = cosine.clamp(-1.0, 1.0).acos();
@@ -227,9 +224,15 @@ impl Leg {
     }
 }
 
-/// Left is +X.
-fn sign(side: usize) -> f64 {
-    if side == 0 { 1.0 } else { -1.0 }
+/// Canonical direction of the bone between two joints -> hanging down.
+fn hang(bind: &[DAffine3], from: usize, to: usize) -> DQuat {
+    let bone = (bind[to].translation - bind[from].translation).normalize_or(DVec3::NEG_Y);
+    DQuat::from_rotation_arc(bone, DVec3::NEG_Y)
+}
+
+/// Splines overshoot below the floor where a foot lands; a soft maximum keeps it above, -3 ‰ of a leg at the worst.
+fn soft_floor(height: f64) -> f64 {
+    0.5 * (height + height.hypot(0.006)) - 0.003
 }
 
 /// Pitch forward, yaw to the left, lean to the left (the head moves towards +X), degrees.

@@ -12,8 +12,8 @@ mod wander;
 pub use humanoid::Humanoid;
 pub use posture::{Posture, through};
 
-use crate::Result;
 use crate::rig::{Character, Clip};
+use crate::{Error, Result};
 
 /// Poses per second of the project's own characters.
 pub const RATE: f64 = 30.0;
@@ -21,6 +21,9 @@ pub const RATE: f64 = 30.0;
 /// Every clip for `character` at `rate` poses per second: gaits, moves, seeded wanderings, the showcase.
 /// Each ends with the posture it began with, up to rounding.
 pub fn clips(character: &Character, rate: f64) -> Result<Vec<Clip>> {
+    if !(rate > 0.0 && rate <= 1000.0) {
+        return Err(Error::Character(format!("wanted up to 1000 poses per second, found {rate}")));
+    }
     let humanoid = Humanoid::new(character)?;
     let moves = moves::moves();
     let mut clips = vec![

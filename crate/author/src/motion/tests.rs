@@ -175,3 +175,15 @@ fn a_skeleton_without_arms_is_refused_by_name() {
     let message = clips(&figure, RATE).expect_err("no left arm").to_string();
     assert!(message.contains("LeftArm"), "{message}");
 }
+
+#[test]
+fn a_leg_without_length_and_an_absurd_rate_are_refused() {
+    let mut figure = stick_figure();
+    let knee = figure.joint("rig:LeftLeg").expect("a knee");
+    assert!(
+        clips(&figure, f64::INFINITY).is_err() && clips(&figure, f64::NAN).is_err() && clips(&figure, 0.0).is_err()
+    );
+    figure.joints[knee].inverse_bind = figure.joints[knee - 1].inverse_bind;
+    let message = clips(&figure, RATE).expect_err("no thigh").to_string();
+    assert!(message.contains("Left leg"), "{message}");
+}

@@ -34,7 +34,7 @@ pub fn keys(seed: u64) -> Vec<(f64, Posture)> {
     let draw = |least: f64, most: f64| least + (most - least) * uniform(&state);
     let key = |i: usize| {
         let random = LEAST.zip(&MOST, draw);
-        let posture = if i % 2 == 0 { random } else { random.blend(&STAND, 0.5) };
+        let posture = if i.is_multiple_of(2) { random } else { random.blend(&STAND, 0.5) };
         (PERIOD * i as f64 / KEYS as f64, posture)
     };
     (0..KEYS).map(key).collect()
