@@ -1,0 +1,86 @@
+//! Walking and jogging in place: foot paths over one stride, everything else in step with them; simulation.md §5.
+
+use super::posture::{Posture, through};
+use std::f64::consts::TAU;
+
+/// How someone walks or runs. Lengths in leg lengths, angles in degrees.
+#[derive(Clone, Copy, Debug)]
+pub struct Gait {
+    /// Seconds per stride (two steps).
+    pub stride: f64,
+    /// Foot path over one stride: share of the stride, forward, up, heel up.
+    pub foot: &'static [[f64; 4]],
+    /// Hips: standing height, bob, sway to the side.
+    pub hips: [f64; 3],
+    /// Trunk: lean forward, hip yaw, counter-twist of the spine, hip roll.
+    pub trunk: [f64; 4],
+    /// Arms: raise, mean swing, swing to and fro, elbow, elbow to and fro.
+    pub arms: [f64; 5],
+}
+
+/// An easy walk.
+pub const WALK: Gait = Gait {
+    stride: 1.15,
+    foot: &[
+        [0.00, 0.285, 0.000, -16.0],
+        [0.10, 0.185, 0.000, 0.0],
+        [0.24, 0.045, 0.000, 0.0],
+        [0.38, -0.095, 0.000, 3.0],
+        [0.50, -0.205, 0.000, 20.0],
+        [0.61, -0.260, 0.020, 46.0],
+        [0.72, -0.090, 0.095, 38.0],
+        [0.83, 0.160, 0.060, 4.0],
+        [0.93, 0.295, 0.025, -16.0],
+    ],
+    hips: [-0.024, 0.013, 0.018],
+    trunk: [2.0, 7.0, 12.0, 3.0],
+    arms: [19.0, 2.0, 21.0, 22.0, 9.0],
+};
+
+/// A light jog.
+pub const JOG: Gait = Gait {
+    stride: 0.72,
+    foot: &[
+        [0.00, 0.200, 0.010, -4.0],
+        [0.12, 0.060, 0.000, 0.0],
+        [0.24, -0.100, 0.000, 6.0],
+        [0.36, -0.240, 0.015, 38.0],
+        [0.50, -0.330, 0.150, 64.0],
+        [0.64, -0.150, 0.280, 50.0],
+        [0.78, 0.170, 0.200, 14.0],
+        [0.91, 0.270, 0.080, -4.0],
+    ],
+    hips: [-0.055, 0.022, 0.010],
+    trunk: [7.0, 8.0, 18.0, 3.0],
+    arms: [24.0, 4.0, 30.0, 82.0, 12.0],
+};
+
+impl Gait {
+    /// Posture at `time` seconds.
+    pub fn at(&self, time: f64) -> Posture {
+        let foot = |phase: f64| {
+            let row = |&[share, z, y, pitch]: &[f64; 4]| {
+                (share, Posture { feet: [[0.0, y, z, 5.0, pitch]; 2], ..Posture::default() })
+            };
+            let keys: Vec<(f64, Posture)> = self.foot.iter().map(row).collect();
+            through(&keys, 1.0, phase).feet[0]
+        };
+        let phase = time / self.stride;
+        let angle = TAU * phase;
+        let [height, bob, sway] = self.hips;
+        let [lean, yaw, twist, roll] = self.trunk;
+        let [raise, mean, swing, elbow, more] = self.arms;
+        // At phase 0 the left heel strikes: left hip forward (yaw to the right), left arm back.
+        let arm = |fore: f64| [raise, mean + swing * fore, 0.0, elbow + more * fore, 4.0];
+        let fore = -(angle - 0.15).cos();
+        Posture {
+            hips: [sway * (angle - 0.6).sin(), height - bob * (2.0 * angle - 0.5).cos(), 0.0],
+            tilt: [lean, -yaw * angle.cos(), -roll * (angle - 0.4).sin()],
+            spine: [lean, twist * angle.cos(), 1.5 * roll * (angle - 0.4).sin()],
+            head: [-lean, -0.4 * (twist - yaw) * angle.cos(), 0.0],
+            arms: [arm(fore), arm(-fore)],
+            feet: [foot(phase), foot(phase + 0.5)],
+            heading: 0.0,
+        }
+    }
+}
