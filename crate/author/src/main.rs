@@ -3,7 +3,7 @@
 mod commands;
 
 use clap::{Parser, Subcommand};
-use commands::{bake, bench, evaluate, inspect, predict, simulate, train};
+use commands::{bake, bench, character, evaluate, garment, inspect, predict, render, simulate, train};
 
 /// Learned cloth for any skinned character.
 ///
@@ -28,17 +28,23 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
-    Inspect(inspect::Arguments),
-    Predict(predict::Arguments),
+    Bake(bake::Arguments),
+    Character(character::Arguments),
+    Garment(garment::Arguments),
     Simulate(simulate::Arguments),
     Train(train::Arguments),
     Evaluate(evaluate::Arguments),
-    Bake(bake::Arguments),
+    Render(render::Arguments),
+    Inspect(inspect::Arguments),
+    Predict(predict::Arguments),
     Bench(bench::Arguments),
 }
 
 fn main() -> std::process::ExitCode {
     let result = match Cli::parse().command {
+        Command::Character(arguments) => character::run(&arguments),
+        Command::Garment(arguments) => garment::run(&arguments),
+        Command::Render(arguments) => render::run(&arguments),
         Command::Inspect(arguments) => inspect::run(&arguments),
         Command::Predict(arguments) => predict::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),

@@ -1,8 +1,9 @@
 //! `ctsn bake`: simulate, train and evaluate in one go.
 
-use super::{evaluate, simulate, train};
-use anyhow::Result;
-use std::path::PathBuf;
+use super::{evaluate, garment, simulate, train};
+use anyhow::{Context, Result};
+use ctsn_author::garment::Cut;
+use std::path::{Path, PathBuf};
 
 /// Character and garment in, model out: simulate → train → evaluate
 ///
@@ -11,8 +12,8 @@ use std::path::PathBuf;
 pub struct Arguments {
     /// Rigged character (glTF)
     character: PathBuf,
-    /// Garment, worn in the character's canonical pose (glTF)
-    garment: PathBuf,
+    /// Garment, worn in the character's canonical pose (glTF). Without one, a garment is made as `ctsn garment` does
+    garment: Option<PathBuf>,
     /// Model file to write (safetensors)
     #[arg(short, long)]
     output: PathBuf,
@@ -25,12 +26,26 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<()> {
     let Arguments { character, garment, output, motion, settings } = arguments;
     let dataset = output.with_extension("work");
+    let garment = match garment {
+        Some(garment) => garment.clone(),
+        None => generated(character, &dataset)?,
+    };
     simulate::run(&simulate::Arguments {
         character: character.clone(),
-        garment: garment.clone(),
+        garment,
         output: dataset.clone(),
         motion: motion.clone(),
     })?;
     train::run(&train::Arguments { dataset: dataset.clone(), output: output.clone(), settings: settings.clone() })?;
     evaluate::run(&evaluate::Arguments { model: output.clone(), dataset, report: None })
+}
+
+/// The garment `ctsn garment` makes, kept beside the dataset and made once.
+fn generated(character: &Path, dataset: &Path) -> Result<PathBuf> {
+    let path = dataset.join("garment.glb");
+    if !path.exists() {
+        std::fs::create_dir_all(dataset).with_context(|| dataset.display().to_string())?;
+        garment::make(character, &Cut::default(), &path)?;
+    }
+    Ok(path)
 }

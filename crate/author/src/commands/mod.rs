@@ -2,9 +2,12 @@
 
 pub mod bake;
 pub mod bench;
+pub mod character;
 pub mod evaluate;
+pub mod garment;
 pub mod inspect;
 pub mod predict;
+pub mod render;
 pub mod simulate;
 pub mod train;
 

@@ -13,9 +13,9 @@ mod unwrap;
 use crate::rig::{Character, Garment};
 use crate::{Error, Result};
 use field::Field;
-use solid::Solid;
 use glam::DVec3;
 use opening::{Opening, openings};
+use solid::Solid;
 
 pub use quality::{Quality, quality};
 
