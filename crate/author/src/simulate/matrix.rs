@@ -112,26 +112,28 @@ impl<'a> Matrix<'a> {
         }
     }
 
-    /// Solves `(self) x = rhs` in place, `rhs` [3n]; false when the matrix is not positive definite.
-    pub fn solve(&mut self, rhs: &mut [f64]) -> bool {
+    /// Factorises the values; false when the matrix is not positive definite.
+    pub fn factorise(&mut self) -> bool {
         let Pattern { columns, rows, symbolic, .. } = self.pattern;
-        let size = rhs.len();
-        let matrix = SparseColMatRef::new(
-            SymbolicSparseColMatRef::new_checked(size, size, columns, None, rows),
-            self.values.as_slice(),
-        );
+        let size = columns.len() - 1;
+        let structure = SymbolicSparseColMatRef::new_checked(size, size, columns, None, rows);
+        let matrix = SparseColMatRef::new(structure, self.values.as_slice());
         let stack = MemStack::new(&mut self.factor_scratch);
         let regular = LltRegularization::default();
         let params = Default::default();
-        if symbolic
+        symbolic
             .factorize_numeric_llt::<f64>(&mut self.factor, matrix, Side::Lower, regular, Par::Seq, stack, params)
-            .is_err()
-        {
-            return false;
-        }
-        let rhs_matrix = MatMut::from_column_major_slice_mut(rhs, size, 1);
+            .is_ok()
+    }
+
+    /// Solves with the last factor: `-gradient` [n] -> step [n].
+    pub fn step(&mut self, gradient: &[DVec3]) -> Vec<DVec3> {
+        let mut rhs: Vec<f64> = gradient.iter().flat_map(|g| [-g.x, -g.y, -g.z]).collect();
+        let size = rhs.len();
         let stack = MemStack::new(&mut self.solve_scratch);
-        LltRef::new(symbolic, &self.factor).solve_in_place_with_conj(Conj::No, rhs_matrix, Par::Seq, stack);
-        rhs.iter().all(|value| value.is_finite())
+        let matrix = MatMut::from_column_major_slice_mut(&mut rhs, size, 1);
+        let factor = LltRef::new(&self.pattern.symbolic, &self.factor);
+        factor.solve_in_place_with_conj(Conj::No, matrix, Par::Seq, stack);
+        rhs.chunks_exact(3).map(DVec3::from_slice).collect()
     }
 }

@@ -1,5 +1,5 @@
 //! Saint Venant–Kirchhoff membrane: `A ψ(F)`, `ψ = μ|G|² + λ/2 tr(G)²`, `G = (FᵀF - I)/2`. simulation.md §2.2.
-//! The Hessian is `BᵀCB` plus the geometric part with the stress clamped to tension, so it is never indefinite.
+//! The Hessian is `BᵀCB` plus the geometric part; with the stress clamped to tension it is never indefinite.
 
 use glam::{DMat3, DVec2, DVec3};
 
@@ -73,12 +73,19 @@ impl Triangle {
         self.strain(lame, x).energy
     }
 
-    /// Gradient per corner in newtons, and the Hessian through `block(a, b, H_ab)` for the pairs `a >= b`.
-    pub fn derivatives(&self, lame: (f64, f64), x: &[DVec3], mut block: impl FnMut(usize, usize, DMat3)) -> [DVec3; 3] {
+    /// Gradient per corner in newtons, and the Hessian through `block(a, b, H_ab)` for the pairs `a >= b`: exact, or
+    /// with compression left out.
+    pub fn derivatives(
+        &self,
+        lame: (f64, f64),
+        x: &[DVec3],
+        exact: bool,
+        mut block: impl FnMut(usize, usize, DMat3),
+    ) -> [DVec3; 3] {
         let Strain { columns: [f1, f2], stress: [s11, s22, s12], .. } = self.strain(lame, x);
         let (p1, p2) = ((f1 * s11 + f2 * s12) * self.area, (f1 * s12 + f2 * s22) * self.area);
         let (mu, lambda) = lame;
-        let [c11, c22, c12] = tension([s11, s22, s12]);
+        let [c11, c22, c12] = if exact { [s11, s22, s12] } else { tension([s11, s22, s12]) };
         let stiff = 2.0 * mu + lambda;
         let g = self.gradients;
         let b = g.map(|g| [f1 * g.x, f2 * g.y, f1 * g.y + f2 * g.x]);

@@ -12,7 +12,7 @@ fn simulator(character: &Character, mesh: Mesh, around: u32) -> crate::Result<Si
 }
 
 /// Left thigh forward and out, left knee bent, right thigh back; degrees. The hip turned and moved.
-fn stride(character: &Character, thigh: f64, knee: f64, back: f64) -> Pose {
+pub fn stride(character: &Character, thigh: f64, knee: f64, back: f64) -> Pose {
     let mut pose = character.canonical_pose();
     let place = |pose: &Pose, child: usize, parent: usize, turn: DQuat| {
         let bind = character.joints[parent].inverse_bind * character.joints[child].inverse_bind.inverse();
