@@ -39,7 +39,7 @@ pub const WALK: Gait = Gait {
 
 /// A light jog.
 pub const JOG: Gait = Gait {
-    stride: 0.72,
+    stride: 0.70,
     foot: &[
         [0.00, 0.200, 0.010, -4.0],
         [0.12, 0.060, 0.000, 0.0],
