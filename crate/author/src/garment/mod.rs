@@ -17,6 +17,9 @@ use glam::DVec3;
 use opening::{Opening, openings};
 use solid::Solid;
 
+#[cfg(test)]
+mod test;
+
 pub use quality::{Quality, quality};
 
 /// How a garment is cut. Fractions run along a limb from where it leaves the trunk (0) to its tip (1).

@@ -125,6 +125,9 @@ fn hem(character: &Character, legs: [&Limb; 2], fraction: f64, hip: DVec3) -> Op
 
 /// Openings where a list of covered joints ends.
 fn around(character: &Character, names: &[String]) -> Result<Vec<Opening>> {
+    if names.is_empty() {
+        return Err(Error::Garment("the list of covered joints is empty: wanted at least one name".into()));
+    }
     let mut covered = vec![false; character.joints.len()];
     for name in names {
         let joint = character.joint(name).ok_or_else(|| Error::Garment(unknown(character, name)))?;
