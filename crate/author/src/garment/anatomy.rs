@@ -138,13 +138,16 @@ impl<'a> Skeleton<'a> {
                 && !central(a)
                 && !central(b)
         };
+        // The most alike first, so that a tail as long as the legs is not taken for one.
+        let difference = |&(a, b): &(usize, usize)| (self.length[a] - self.length[b]).abs() + (away(a) - away(b)).abs();
+        let both =
+            |(index, &a): (usize, &usize)| children[index + 1..].iter().map(move |&b| (a, b)).collect::<Vec<_>>();
+        let mut alike: Vec<(usize, usize)> = children.iter().enumerate().flat_map(both).collect();
+        alike.retain(|&(a, b)| mirrored(a, b));
+        alike.sort_by(|p, q| difference(p).total_cmp(&difference(q)));
         let mut pairs: Vec<(usize, usize)> = Vec::new();
-        for (index, &a) in children.iter().enumerate() {
-            let taken = |joint: usize| pairs.iter().any(|&(p, q)| p == joint || q == joint);
-            let rest = children[index + 1..].iter().filter(|&&b| mirrored(a, b) && !taken(b));
-            let difference = |b: usize| (self.length[a] - self.length[b]).abs() + (away(a) - away(b)).abs();
-            let best = rest.min_by(|&&b, &&c| difference(b).total_cmp(&difference(c)));
-            if let (Some(&b), false) = (best, taken(a)) {
+        for (a, b) in alike {
+            if !pairs.iter().any(|&(p, q)| [p, q].contains(&a) || [p, q].contains(&b)) {
                 pairs.push((a, b));
             }
         }
