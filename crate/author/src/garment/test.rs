@@ -31,9 +31,12 @@ fn capsule(character: &mut Character, joint: usize, a: DVec3, b: DVec3, radius: 
     }
 }
 
-/// A character of bones: (name, parent, joint, end of its capsule, radius).
-fn character(bones: &[(&str, Option<usize>, [f64; 3], [f64; 3], f64)]) -> Character {
-    let joint = |bone: &(&str, Option<usize>, [f64; 3], [f64; 3], f64)| Joint {
+/// Name, parent, joint, end of the capsule, radius.
+type Bone = (&'static str, Option<usize>, [f64; 3], [f64; 3], f64);
+
+/// A character of bones.
+fn character(bones: &[Bone]) -> Character {
+    let joint = |bone: &Bone| Joint {
         name: bone.0.into(),
         parent: bone.1,
         inverse_bind: DAffine3::from_translation(-DVec3::from(bone.2)),
@@ -210,4 +213,19 @@ fn bad_cuts_say_what_was_wanted() {
     let mut broken = person.clone();
     broken.body.positions[7].x = f64::NAN;
     assert!(shell(&broken, &Cut::default()).unwrap_err().to_string().contains("vertex 7"));
+}
+
+#[test]
+#[ignore = "needs the characters of ../shared/assets beside the repository"]
+fn the_shared_characters_get_wearable_garments() {
+    let crate_folder = std::env::var("CARGO_MANIFEST_DIR").unwrap();
+    let assets = std::path::Path::new(&crate_folder).join("../../../shared/assets");
+    for (file, loops) in [("xbot.glb", 4), ("fox.glb", 6)] {
+        let character = crate::gltf::read_character(&assets.join(file), 30.0).unwrap();
+        let garment = shell(&character, &Cut::default()).unwrap();
+        let low = character.body.positions.iter().fold(DVec3::INFINITY, |low, p| low.min(*p));
+        let high = character.body.positions.iter().fold(DVec3::NEG_INFINITY, |high, p| high.max(*p));
+        assert!(garment.mesh.positions.len() >= 2000);
+        assert_wearable(&character, &garment, loops, (high - low).max_element() / 150.0);
+    }
 }
