@@ -61,11 +61,12 @@ pub trait Device {
         potentials: &mut Self::Buffer,
     );
     /// projected [n, 4F] = q | k | v | r, potentials [n, 6] -> ĥ [n, F]: attention over the neighbours.
+    /// Leaves the edge term `U` in projected: q | k + U | v + U | r.
     fn attend(
         &mut self,
         graph: &Graph<Self::Indices>,
         sizes: Sizes,
-        projected: &Self::Buffer,
+        projected: &mut Self::Buffer,
         potentials: &Self::Buffer,
         layer: &Layer<Self::Buffer>,
         attended: &mut Self::Buffer,

@@ -202,7 +202,7 @@ impl Device for Tape {
         &mut self,
         graph: &Graph<IndexId>,
         sizes: Sizes,
-        projected: &Id,
+        projected: &mut Id,
         potentials: &Id,
         layer: &Layer<Id>,
         attended: &mut Id,

@@ -97,10 +97,13 @@ fn skin() {
 #[test]
 fn attend() {
     let sizes = Sizes { vertices: 5, joints: 3, embedding: 4, basis: 6, features: 8, heads: 2 };
-    check_operation(&[5 * 32, 6 * 8, 5 * 6], 1, 5 * 8, |tape, ids, y| {
+    check_operation(&[5 * 32, 6 * 8, 5 * 6, 5 * 32], 2, 5 * 8, |tape, ids, y| {
         let graph = strip();
         let graph = Graph { offsets: tape.indices(&graph.offsets), neighbours: tape.indices(&graph.neighbours) };
-        tape.attend(&graph, sizes, &ids[0], &ids[2], &layer(ids[1], ids[1], ids[1], ids[1]), y);
+        // Attention changes its input, so that must be an activation.
+        let mut projected = tape.buffer(&[0.0; 5 * 32]);
+        tape.add(&ids[3], &ids[0], &mut projected);
+        tape.attend(&graph, sizes, &mut projected, &ids[2], &layer(ids[1], ids[1], ids[1], ids[1]), y);
     });
 }
 

@@ -10,44 +10,44 @@ use fearless_simd::{Level, Simd, dispatch};
 /// Room for one call.
 #[derive(Default)]
 pub struct Scratch {
-    /// `k + U | v + U | U` per vertex [n, 3F].
-    nodes: Vec<f32>,
+    /// U per vertex [n, F].
+    edges: Vec<f32>,
     /// Scores of one vertex [C, degree].
     scores: Vec<f32>,
 }
 
-/// projected [n, 4F] = q | k | v | r, potentials [n, 6], edge `W_eᵀ` [6, F] -> attended [n, F].
+/// projected [n, 4F] = q | k | v | r, potentials [n, 6], edge `W_eᵀ` [6, F] -> attended [n, F];
+/// projected becomes q | k + U | v + U | r.
 #[expect(clippy::too_many_arguments, reason = "an operation takes its operands plainly, as its shader does")]
 pub fn attend(
     level: Level,
     graph: &Graph<Vec<u32>>,
     heads: usize,
-    projected: &[f32],
+    projected: &mut [f32],
     potentials: &[f32],
     edge: &[f32],
     scratch: &mut Scratch,
     attended: &mut [f32],
 ) {
+    scratch.edges.resize(attended.len(), 0.0);
     dispatch!(level, simd => {
-        fold(simd, projected, potentials, edge, &mut scratch.nodes);
-        kernel(simd, graph, heads, projected, &scratch.nodes, &mut scratch.scores, attended);
+        fold(simd, projected, potentials, edge, &mut scratch.edges);
+        kernel(simd, graph, heads, projected, scratch, attended);
     });
 }
 
-/// Moves the edge term into the nodes: projected, potentials -> `k + U | v + U | U`.
+/// Moves the edge term into the nodes: `U = W_e potentials`, added to k and v.
 #[inline(always)]
-pub fn fold<S: Simd>(simd: S, projected: &[f32], potentials: &[f32], edge: &[f32], nodes: &mut Vec<f32>) {
+fn fold<S: Simd>(simd: S, projected: &mut [f32], potentials: &[f32], edge: &[f32], edges: &mut [f32]) {
     let features = edge.len() / 6;
-    nodes.resize(projected.len() / 4 * 3, 0.0);
-    let rows = projected.chunks_exact(4 * features).zip(potentials.as_chunks::<6>().0);
-    for (node, (projected, potential)) in nodes.chunks_exact_mut(3 * features).zip(rows) {
-        let (key_value, u) = node.split_at_mut(2 * features);
+    let rows = projected.chunks_exact_mut(4 * features).zip(potentials.as_chunks::<6>().0);
+    for (u, (projected, potential)) in edges.chunks_exact_mut(features).zip(rows) {
         u.fill(0.0);
         for (edge, potential) in edge.chunks_exact(features).zip(potential) {
             axpy(simd, *potential, edge, u);
         }
-        key_value.copy_from_slice(&projected[features..3 * features]);
-        key_value.chunks_exact_mut(features).for_each(|half| axpy(simd, 1.0, u, half));
+        let key_value = projected[features..3 * features].chunks_exact_mut(features);
+        key_value.for_each(|half| axpy(simd, 1.0, u, half));
     }
 }
 
@@ -57,10 +57,10 @@ fn kernel<S: Simd>(
     graph: &Graph<Vec<u32>>,
     heads: usize,
     projected: &[f32],
-    nodes: &[f32],
-    scores: &mut Vec<f32>,
+    scratch: &mut Scratch,
     attended: &mut [f32],
 ) {
+    let Scratch { edges, scores } = scratch;
     let features = attended.len() / (graph.offsets.len() - 1);
     let d = features / heads;
     let scale = 1.0 / (d as f32).sqrt();
@@ -74,19 +74,19 @@ fn kernel<S: Simd>(
         scores.resize(scores.len().max(heads * degree), 0.0);
         let scores = &mut scores[..heads * degree];
         for (e, j) in neighbours.iter().enumerate() {
-            let key = &nodes[*j as usize * 3 * features..][..features];
+            let key = &projected[(*j as usize * 4 + 1) * features..][..features];
             for (c, (query, key)) in query.chunks_exact(d).zip(key.chunks_exact(d)).enumerate() {
                 scores[c * degree + e] = dot(simd, query, key) * scale;
             }
         }
         softmax(simd, scores, degree);
         for (e, j) in neighbours.iter().enumerate() {
-            let value = &nodes[(*j as usize * 3 + 1) * features..][..features];
+            let value = &projected[(*j as usize * 4 + 2) * features..][..features];
             for (c, (value, output)) in value.chunks_exact(d).zip(output.chunks_exact_mut(d)).enumerate() {
                 axpy(simd, scores[c * degree + e], value, output);
             }
         }
-        axpy(simd, -1.0, &nodes[(i * 3 + 2) * features..][..features], output);
+        axpy(simd, -1.0, &edges[i * features..][..features], output);
     }
 }
 

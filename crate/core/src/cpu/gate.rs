@@ -1,6 +1,6 @@
 //! `β = sigmoid(w_g · [ĥ ; r ; ĥ - r])`, `h = ReLU(LayerNorm((1-β) ĥ + β r))`, eps 1e-5. network.md §3.
 
-use super::vector::dot;
+use super::vector::{dot, sum};
 use fearless_simd::{Level, Simd, SimdBase, SimdFloat, dispatch};
 
 /// LayerNorm's eps; part of the contract.
@@ -43,7 +43,7 @@ fn kernel<S: Simd>(
         for ((output, attended), skip) in output.iter_mut().zip(attended).zip(skip) {
             *output = attended + beta * (skip - attended);
         }
-        let mean = output.iter().sum::<f32>() / features as f32;
+        let mean = sum(simd, output) / features as f32;
         output.iter_mut().for_each(|value| *value -= mean);
         let variance = dot(simd, output, output) / features as f32;
         normalise(simd, 1.0 / (variance + EPSILON).sqrt(), norm_weight, norm_bias, output);

@@ -95,7 +95,7 @@ impl Device for Cpu {
         &mut self,
         graph: &Graph<Vec<u32>>,
         sizes: Sizes,
-        projected: &Vec<f32>,
+        projected: &mut Vec<f32>,
         potentials: &Vec<f32>,
         layer: &Layer<Vec<f32>>,
         attended: &mut Vec<f32>,

@@ -1,4 +1,4 @@
-//! Dot product and scaled addition over slices of any length: whole vectors, then the rest.
+//! Sum, dot product and scaled addition over slices of any length: whole vectors, then the rest.
 
 use fearless_simd::{Simd, SimdBase, SimdFloat};
 
@@ -13,6 +13,17 @@ pub fn dot<S: Simd>(simd: S, a: &[f32], b: &[f32]) -> f32 {
     }
     let tail: f32 = a.remainder().iter().zip(b.remainder()).map(|(a, b)| a * b).sum();
     sum.reduce_sum() + tail
+}
+
+/// `Σ a_i`.
+#[inline(always)]
+pub fn sum<S: Simd>(simd: S, a: &[f32]) -> f32 {
+    let mut chunks = a.chunks_exact(S::f32s::LEN);
+    let mut sum = S::f32s::splat(simd, 0.0);
+    for chunk in chunks.by_ref() {
+        sum += S::f32s::from_slice(simd, chunk);
+    }
+    sum.reduce_sum() + chunks.remainder().iter().sum::<f32>()
 }
 
 /// `y += a x`; slices of equal length.

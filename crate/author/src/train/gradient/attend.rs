@@ -2,7 +2,7 @@
 //! `dα_j = g·v'_j`, `ds = α (dα - Σ α dα) / √d`, `dq = Σ ds k'`, `dk'_j += ds q`, `dv'_j += α g`, `dU = dk' + dv' - g`.
 
 use ctsn_core::cpu::Level;
-use ctsn_core::cpu::attend::{fold, softmax};
+use ctsn_core::cpu::attend::softmax;
 use ctsn_core::cpu::vector::{axpy, dot};
 use ctsn_core::topology::Graph;
 use fearless_simd::{Simd, dispatch};
@@ -13,18 +13,15 @@ pub struct Inputs<'a> {
     pub graph: &'a Graph<Vec<u32>>,
     /// C.
     pub heads: usize,
-    /// q | k | v | r [n, 4F].
+    /// q | k' | v' | r [n, 4F], as the forward operation leaves it.
     pub projected: &'a [f32],
     /// [n, 6].
     pub potentials: &'a [f32],
-    /// `W_eᵀ` [6, F].
-    pub edge: &'a [f32],
 }
 
 /// Room for one call.
 #[derive(Default)]
 pub struct Scratch {
-    nodes: Vec<f32>,
     alpha: Vec<f32>,
     dalpha: Vec<f32>,
     dpotential: Vec<f32>,
@@ -40,7 +37,6 @@ pub fn attend(
     dedge: &mut [f32],
 ) {
     dispatch!(level, simd => {
-        fold(simd, inputs.projected, inputs.potentials, inputs.edge, &mut scratch.nodes);
         scratch.dpotential.clear();
         scratch.dpotential.resize(g.len(), 0.0);
         kernel(simd, inputs, g, scratch, dprojected);
@@ -50,23 +46,24 @@ pub fn attend(
 
 #[inline(always)]
 fn kernel<S: Simd>(simd: S, inputs: &Inputs, g: &[f32], scratch: &mut Scratch, dprojected: &mut [f32]) {
-    let features = inputs.edge.len() / 6;
+    let features = g.len() / (inputs.graph.offsets.len() - 1);
     let d = features / inputs.heads;
-    let Scratch { nodes, alpha, dalpha, dpotential } = scratch;
+    let Scratch { alpha, dalpha, dpotential } = scratch;
+    let projected = inputs.projected;
     for (i, g) in g.chunks_exact(features).enumerate() {
         let neighbours = inputs.graph.of(i);
         if neighbours.is_empty() {
             continue;
         }
-        let query = &inputs.projected[i * 4 * features..][..features];
-        scores(simd, query, nodes, g, neighbours, d, alpha, dalpha);
+        let query = &projected[i * 4 * features..][..features];
+        scores(simd, query, projected, g, neighbours, d, alpha, dalpha);
         axpy(simd, -1.0, g, &mut dpotential[i * features..][..features]);
         let degree = neighbours.len();
         for (e, j) in neighbours.iter().map(|j| *j as usize).enumerate() {
             for (c, at) in (0..features).step_by(d).enumerate() {
                 let (alpha, ds) = (alpha[c * degree + e], dalpha[c * degree + e]);
                 let (g, query) = (&g[at..at + d], &query[at..at + d]);
-                let key = &nodes[j * 3 * features + at..][..d];
+                let key = &projected[(j * 4 + 1) * features + at..][..d];
                 axpy(simd, ds, key, &mut dprojected[i * 4 * features + at..][..d]);
                 axpy(simd, ds, query, &mut dprojected[(j * 4 + 1) * features + at..][..d]);
                 axpy(simd, alpha, g, &mut dprojected[(j * 4 + 2) * features + at..][..d]);
@@ -84,7 +81,7 @@ fn kernel<S: Simd>(simd: S, inputs: &Inputs, g: &[f32], scratch: &mut Scratch, d
 fn scores<S: Simd>(
     simd: S,
     query: &[f32],
-    nodes: &[f32],
+    projected: &[f32],
     g: &[f32],
     neighbours: &[u32],
     d: usize,
@@ -96,10 +93,10 @@ fn scores<S: Simd>(
     alpha.resize(features / d * degree, 0.0);
     dalpha.resize(features / d * degree, 0.0);
     for (e, j) in neighbours.iter().enumerate() {
-        let node = &nodes[*j as usize * 3 * features..][..2 * features];
+        let key_value = &projected[(*j as usize * 4 + 1) * features..][..2 * features];
         for (c, at) in (0..features).step_by(d).enumerate() {
-            alpha[c * degree + e] = dot(simd, &query[at..at + d], &node[at..at + d]) * scale;
-            dalpha[c * degree + e] = dot(simd, &g[at..at + d], &node[features + at..][..d]);
+            alpha[c * degree + e] = dot(simd, &query[at..at + d], &key_value[at..at + d]) * scale;
+            dalpha[c * degree + e] = dot(simd, &g[at..at + d], &key_value[features + at..][..d]);
         }
     }
     softmax(simd, alpha, degree);

@@ -57,11 +57,12 @@ pub(super) fn run(tape: &Tape, operation: &Operation, shared: &Shared, lane: &mu
         }),
         Operation::Attend { graph, heads, projected, potentials, edge, attended } => {
             let mut scratch = std::mem::take(&mut lane.scratch.forward);
-            lane.write(*attended, |lane, attended| {
-                let value = |id| lane.value(shared, id);
-                let (graph, scratch) = (tape.graph(*graph), &mut scratch);
-                let (projected, potentials) = (value(*projected), value(*potentials));
-                cpu::attend::attend(level, graph, *heads, projected, potentials, value(*edge), scratch, attended);
+            lane.write(*projected, |lane, projected| {
+                lane.write(*attended, |lane, attended| {
+                    let (graph, potentials, edge) =
+                        (tape.graph(*graph), lane.value(shared, *potentials), lane.value(shared, *edge));
+                    cpu::attend::attend(level, graph, *heads, projected, potentials, edge, &mut scratch, attended);
+                });
             });
             lane.scratch.forward = scratch;
         }
@@ -111,7 +112,6 @@ pub(super) fn backward(tape: &Tape, operation: &Operation, shared: &Shared, lane
                     heads: *heads,
                     projected: value(*projected),
                     potentials: value(*potentials),
-                    edge: value(*edge),
                 };
                 attend::attend(lane.level, &inputs, g, &mut scratch, dprojected, dedge);
             });
