@@ -87,12 +87,12 @@ impl Predictor {
 
     /// Texture coordinates of the drawn vertices [2·d].
     pub fn surface_uv(&self) -> Option<Vec<f32>> {
-        self.inner.surface().map(|surface| surface.uv.as_flattened().to_vec())
+        self.inner.surface().map(|surface| surface.uv.clone())
     }
 
     /// Triangles of the drawn surface [3·t].
     pub fn surface_triangles(&self) -> Option<Vec<u32>> {
-        self.inner.surface().map(|surface| surface.triangles.as_flattened().to_vec())
+        self.inner.surface().map(|surface| surface.triangles.clone())
     }
 
     /// Cloth vertices.

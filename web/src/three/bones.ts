@@ -38,3 +38,24 @@ export function topmost(bones: readonly Object3D[]): Object3D[] {
     return true;
   });
 }
+
+/** Makes the world matrices of these objects, of all above and all below them true. */
+export function refresh(tops: readonly Object3D[]): void {
+  for (let i = 0; i < tops.length; i++) {
+    const top = tops[i]!;
+    if (top.parent) refreshAbove(top.parent);
+    top.updateWorldMatrix(false, true, true);
+  }
+}
+
+/**
+ * Makes the world matrices of an object and of all above it true. Not `updateWorldMatrix(true, …)`: since three r187 that
+ * skips an object whose own matrix did not change, although its parent's did, and it takes the mark `matrixWorldNeedsUpdate`
+ * away, by which the renderer would have updated the object's other children.
+ */
+export function refreshAbove(object: Object3D): void {
+  if (object.parent) refreshAbove(object.parent);
+  const marked = object.matrixWorldNeedsUpdate;
+  object.updateWorldMatrix(false, false, true);
+  object.matrixWorldNeedsUpdate = marked;
+}

@@ -1,6 +1,6 @@
 import { Matrix4, Mesh, type BufferGeometry, type Material, type Object3D } from 'three';
 import type { ClothModel, PredictOptions } from '../model.js';
-import { findBones, topmost, type Character } from './bones.js';
+import { findBones, refresh, refreshAbove, topmost, type Character } from './bones.js';
 import { splitPlacement } from './placement.js';
 import { createGeometry, drawFrame } from './surface.js';
 
@@ -38,7 +38,7 @@ export class Cloth<M extends Material | Material[] = Material> extends Mesh<Buff
 
   /** Predicts the cloth for the bones as they stand now. Allocates nothing. */
   update(options?: PredictOptions): this {
-    for (const top of this.#tops) top.updateWorldMatrix(true, true);
+    refresh(this.#tops);
     const { model, geometry } = this;
     if (splitPlacement(this.bones, model.rootIndex, this.#rootInverseBind, this.#pose, this.#placement)) {
       drawFrame(geometry, model.predictCloth(this.#pose, options), model.surface?.vertex);
@@ -51,7 +51,7 @@ export class Cloth<M extends Material | Material[] = Material> extends Mesh<Buff
   #place(): void {
     this.matrix.copy(this.#placement);
     if (this.parent) {
-      this.parent.updateWorldMatrix(true, false);
+      refreshAbove(this.parent);
       this.matrix.copy(this.parent.matrixWorld).invert().multiply(this.#placement);
     }
     this.matrixWorld.copy(this.#placement);

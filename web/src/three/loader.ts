@@ -23,14 +23,18 @@ export class ClothLoader extends Loader<ClothModel> {
     const address = this.manager.resolveURL(this.path + url);
     const request: RequestInit = { headers: this.requestHeader, credentials: this.withCredentials ? 'include' : 'same-origin' };
     this.manager.itemStart(address);
-    loadModel(address, { request, wasm: this.#wasm, onProgress: (progress) => onProgress?.(toEvent(progress)) })
-      .then(onLoad)
-      .catch((error: unknown) => {
+    loadModel(address, { request, wasm: this.#wasm, onProgress: (progress) => onProgress?.(toEvent(progress)) }).then(
+      (model) => {
+        onLoad(model);
+        this.manager.itemEnd(address);
+      },
+      (error: unknown) => {
         if (onError) onError(error);
         else console.error(error);
         this.manager.itemError(address);
-      })
-      .finally(() => this.manager.itemEnd(address));
+        this.manager.itemEnd(address);
+      },
+    );
   }
 }
 
