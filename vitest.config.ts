@@ -7,8 +7,8 @@ export default defineConfig({
   test: {
     // One test file after the other: the browser tests measure, and two cores are all that may be there.
     fileParallelism: false,
-    testTimeout: 120_000,
-    hookTimeout: 120_000,
+    testTimeout: 300_000,
+    hookTimeout: 300_000,
     projects: [
       // The package as it is published, on Node: with the newest three.js it is made for, and with the oldest.
       { extends: true, test: { name: 'package', include: ['web/tests/*.test.ts'] } },

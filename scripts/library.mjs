@@ -1,5 +1,5 @@
 // Rust -> wasm -> web/src/glue -> web/dist: the npm package `ctsn`, rebuilt only where something changed.
-import { cpSync, existsSync, mkdirSync, readFileSync, renameSync, statSync, writeFileSync } from 'node:fs';
+import { cpSync, existsSync, mkdirSync, readFileSync, renameSync, writeFileSync } from 'node:fs';
 import { createHash } from 'node:crypto';
 import { at, need, say } from './step.mjs';
 
@@ -39,5 +39,5 @@ export async function buildLibrary() {
   cpSync(glue, at('web', 'dist', 'glue'), { recursive: true, preserveTimestamps: true });
 }
 
-/** Bytes of a built file. */
-export const bytes = (file) => statSync(file).size;
+
+

@@ -1,13 +1,15 @@
 // What a clean clone needs before anything can be built; each piece is looked for first and installed only when missing.
-import { existsSync, readFileSync, statSync } from 'node:fs';
+import { existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { at, need, run, say, Stop } from './step.mjs';
 
 /** npm packages as package-lock.json names them. */
 export async function ensurePackages() {
-  const installed = at('node_modules', '.package-lock.json');
-  if (existsSync(installed) && statSync(installed).mtimeMs >= statSync(at('package-lock.json')).mtimeMs) return;
+  const lock = readFileSync(at('package-lock.json'), 'utf8');
+  const installed = at('node_modules', '.ctsn-lock.json');
+  if (existsSync(installed) && readFileSync(installed, 'utf8') === lock) return;
   say('installing npm packages');
   await need('npm', ['ci', '--no-audit', '--no-fund']);
+  writeFileSync(installed, lock);
 }
 
 /** cargo, with the pinned toolchain of rust-toolchain.toml and the target wasm32-unknown-unknown. */

@@ -18,6 +18,7 @@ export class RunningDemo {
   readonly #panel: Panel;
   readonly #cloth: Cloth;
   readonly #fabric: Material;
+  #changed = true;
   readonly #mesh = new MeshBasicMaterial({ wireframe: true, color: '#2d4f6b' });
 
   constructor(stage: Stage, character: Character, model: ClothModel, panel: Panel) {
@@ -29,28 +30,34 @@ export class RunningDemo {
     this.#fabric = createFabric(this.#cloth.geometry);
     this.#cloth.castShadow = this.#cloth.receiveShadow = true;
     stage.scene.add(character.scene, this.#cloth);
-    panel.onScrub = (seconds) => character.show(panel.wishes.clip, seconds);
+    panel.onScrub = (seconds) => {
+      character.show(panel.wishes.clip, seconds);
+      this.#changed = true;
+    };
     panel.onChange = () => {
+      this.#changed = true;
       this.meter.reset();
       if (panel.wishes.clip !== character.clip) character.show(panel.wishes.clip, 0);
     };
   }
 
-  /** Runs until the page closes. */
+  /** Runs until the page closes. A page at rest draws nothing. */
   run(): void {
     let last: number | undefined;
     this.#stage.renderer.setAnimationLoop((now: number) => {
       // A page in the background gets no frames; the motion goes on where it stood.
       const seconds = Math.min((now - (last ?? now)) / 1000, 0.1);
       last = now;
-      if (this.#panel.wishes.playing) this.#character.advance(seconds);
-      this.draw();
+      const { playing } = this.#panel.wishes;
+      if (playing) this.#character.advance(seconds);
+      if (this.#stage.look() || playing || this.#changed) this.draw();
     });
   }
 
   /** Predicts the cloth for the character as it stands, and draws both. */
   draw(): void {
     const { wishes } = this.#panel;
+    this.#changed = false;
     this.meter.time(() => this.#cloth.update(wishes));
     this.predictions++;
     this.#cloth.material = wishes.wireframe ? this.#mesh : this.#fabric;

@@ -33,7 +33,7 @@ export class Panel {
   readonly wishes: Wishes = { playing: true, streams: 'both', clip: '', wireframe: false };
   /** Called when the person drags the time. */
   onScrub: (seconds: number) => void = () => {};
-  /** Called when another clip or another source of the cloth is chosen. */
+  /** Called when anything else is chosen. */
   onChange: () => void = () => {};
 
   readonly #play = element<HTMLButtonElement>('play');
@@ -92,7 +92,10 @@ export class Panel {
       radio.addEventListener('change', () => this.choose(radio.value as StreamChoice));
     }
     const wireframe = element<HTMLInputElement>('wireframe');
-    wireframe.addEventListener('change', () => (this.wishes.wireframe = wireframe.checked));
+    wireframe.addEventListener('change', () => {
+      this.wishes.wireframe = wireframe.checked;
+      this.onChange();
+    });
   }
 }
 

@@ -22,6 +22,7 @@ export class Stage {
   readonly controls: OrbitControls;
   readonly #sun = createSun();
   readonly #focus = new Vector3(0, 0.95, 0);
+  #resized = true;
 
   constructor(canvas: HTMLCanvasElement) {
     this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
@@ -48,15 +49,22 @@ export class Stage {
     this.#sun.position.set(to.x + 1.6, 4.2, to.z + 2.4);
   }
 
+  /** Moves the camera as the person at the controls does; true when the picture changes by it. */
+  look(): boolean {
+    const changed = this.controls.update() || this.#resized;
+    this.#resized = false;
+    return changed;
+  }
+
   /** Draws one frame. */
   render(): void {
-    this.controls.update();
     this.renderer.render(this.scene, this.camera);
   }
 
   #resize(canvas: HTMLCanvasElement): void {
     const { clientWidth: width, clientHeight: height } = canvas;
     this.renderer.setSize(width, height, false);
+    this.#resized = true;
     this.camera.aspect = width / height;
     // On a wide page the panel covers the right: the character stands left of it. On a narrow one it stands above.
     const wide = width > 760;
