@@ -68,6 +68,7 @@ export class Stage {
     this.camera.aspect = width / height;
     // On a wide page the panel covers the right: the character stands left of it. On a narrow one it stands above.
     const wide = width > 760;
+    this.camera.fov = wide ? 30 : 52;
     this.camera.setViewOffset(width, height, wide ? 0.06 * width : 0, wide ? 0 : 0.2 * height, width, height);
   }
 }
@@ -75,8 +76,8 @@ export class Stage {
 function createSun(): DirectionalLight {
   const sun = new DirectionalLight('#fff3e2', 2.6);
   sun.castShadow = true;
-  sun.shadow.mapSize.set(2048, 2048);
-  sun.shadow.radius = 5;
+  sun.shadow.mapSize.set(1024, 1024);
+  sun.shadow.radius = 6;
   sun.shadow.normalBias = 0.015;
   Object.assign(sun.shadow.camera, { left: -1.6, right: 1.6, top: 1.6, bottom: -1.6, near: 1, far: 9 });
   return sun;
