@@ -25,6 +25,11 @@ test('the page plays, predicts every frame, and its controls work', async () => 
   const frozen = await page.textContent('#clock');
   await page.waitForTimeout(500);
   expect(await page.textContent('#clock')).toBe(frozen);
+  // At rest nothing is drawn, until the camera moves.
+  const before = (await ask(page, (demo) => demo.predictions, null))!;
+  await page.mouse.move(300, 300);
+  await page.mouse.wheel(0, -400);
+  await expect.poll(() => ask(page, (demo) => demo.predictions, null), patience).toBeGreaterThan(before);
   await page.getByLabel('Time within the clip').fill('0.5');
   await expect.poll(() => page.textContent('#clock')).toMatch(/^0\.50 s of/);
   await page.screenshot({ path: `${out}/mesh.png` });

@@ -22,7 +22,7 @@ export class Stage {
   readonly controls: OrbitControls;
   readonly #sun = createSun();
   readonly #focus = new Vector3(0, 0.95, 0);
-  #resized = true;
+  #changed = true;
 
   constructor(canvas: HTMLCanvasElement) {
     this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
@@ -33,6 +33,8 @@ export class Stage {
     this.camera.position.set(1.1, 1.35, 4.6);
     this.controls = new OrbitControls(this.camera, canvas);
     Object.assign(this.controls, { enableDamping: true, enablePan: false, minDistance: 1.2, maxDistance: 9, maxPolarAngle: 1.65 });
+    // The controls move the camera in their own event handlers too, not only in update().
+    this.controls.addEventListener('change', () => (this.#changed = true));
     this.scene.add(new HemisphereLight('#fdfaf4', '#8d8478', 1.5), this.#sun, this.#sun.target, createFill(), createGround());
     new ResizeObserver(() => this.#resize(canvas)).observe(canvas);
     this.#resize(canvas);
@@ -49,10 +51,11 @@ export class Stage {
     this.#sun.position.set(to.x + 1.6, 4.2, to.z + 2.4);
   }
 
-  /** Moves the camera as the person at the controls does; true when the picture changes by it. */
+  /** Moves the camera as the person at the controls does; true when the picture is another since the last call. */
   look(): boolean {
-    const changed = this.controls.update() || this.#resized;
-    this.#resized = false;
+    this.controls.update();
+    const changed = this.#changed;
+    this.#changed = false;
     return changed;
   }
 
@@ -64,7 +67,7 @@ export class Stage {
   #resize(canvas: HTMLCanvasElement): void {
     const { clientWidth: width, clientHeight: height } = canvas;
     this.renderer.setSize(width, height, false);
-    this.#resized = true;
+    this.#changed = true;
     this.camera.aspect = width / height;
     // On a wide page the panel covers the right: the character stands left of it. On a narrow one it stands above.
     const wide = width > 760;
