@@ -1,1 +1,129 @@
-//! Placeholder.
+//! The browser's door: hands `ctsn_core::Predictor` to JavaScript. No arithmetic here; its twin on the other side
+//! of the wall is `web/src/raw.ts`, the one file that imports what wasm-bindgen makes of this.
+
+use ctsn_core::Error;
+use wasm_bindgen::prelude::*;
+
+/// Which of the network's streams act.
+#[wasm_bindgen]
+#[derive(Clone, Copy, Debug)]
+pub enum Streams {
+    /// The whole network.
+    Both = 0,
+    /// The skeleton-based stream only.
+    Skeleton = 1,
+    /// No stream: plain linear blend skinning.
+    None = 2,
+}
+
+impl From<Streams> for ctsn_core::Streams {
+    fn from(streams: Streams) -> Self {
+        match streams {
+            Streams::Both => Self::Both,
+            Streams::Skeleton => Self::Skeleton,
+            Streams::None => Self::None,
+        }
+    }
+}
+
+/// A JavaScript `Error` whose `name` is the core's stable code.
+fn to_js(error: &Error) -> js_sys::Error {
+    let js = js_sys::Error::new(&error.to_string());
+    js.set_name(error.kind());
+    js
+}
+
+/// Reports a panic, which would be a fault of ours, on the console with its place in the source.
+#[wasm_bindgen(start)]
+pub fn start() {
+    console_error_panic_hook::set_once();
+}
+
+/// One model with its buffers. JavaScript reaches the large ones by address, so that a frame copies nothing.
+#[wasm_bindgen]
+pub struct Predictor {
+    inner: ctsn_core::Predictor,
+    pose: Vec<f32>,
+    failure: Option<Error>,
+}
+
+#[wasm_bindgen]
+impl Predictor {
+    /// Reads a model file.
+    ///
+    /// # Errors
+    /// A JavaScript `Error` whose `name` is the code of what is wrong with the file.
+    #[wasm_bindgen(constructor)]
+    pub fn new(bytes: Vec<u8>) -> Result<Predictor, js_sys::Error> {
+        let inner = ctsn_core::Predictor::new(&bytes).map_err(|error| to_js(&error))?;
+        let pose = vec![0.0; inner.joints().len() * 16];
+        Ok(Self { inner, pose, failure: None })
+    }
+
+    /// Joint names, in the order of the pose [J].
+    pub fn joints(&self) -> Vec<String> {
+        self.inner.joints().to_vec()
+    }
+
+    /// Index of the root joint.
+    pub fn root(&self) -> usize {
+        self.inner.root()
+    }
+
+    /// Inverse bind matrices, row-major 3×4, one after the other [12·J].
+    pub fn inverse_bind(&self) -> Vec<f32> {
+        self.inner.inverse_bind().as_flattened().to_vec()
+    }
+
+    /// Triangles of the welded cloth mesh [3·t].
+    pub fn triangles(&self) -> Vec<u32> {
+        self.inner.triangles().to_vec()
+    }
+
+    /// Drawn vertex -> cloth vertex [d]; nothing when the file holds no drawn surface.
+    pub fn surface_vertex(&self) -> Option<Vec<u32>> {
+        self.inner.surface().map(|surface| surface.vertex.clone())
+    }
+
+    /// Texture coordinates of the drawn vertices [2·d].
+    pub fn surface_uv(&self) -> Option<Vec<f32>> {
+        self.inner.surface().map(|surface| surface.uv.clone())
+    }
+
+    /// Triangles of the drawn surface [3·t].
+    pub fn surface_triangles(&self) -> Option<Vec<u32>> {
+        self.inner.surface().map(|surface| surface.triangles.clone())
+    }
+
+    /// Cloth vertices.
+    pub fn vertex_count(&self) -> usize {
+        self.inner.positions().len() / 3
+    }
+
+    /// Address of the joint world matrices [16·J], column-major, metres: written by the caller before [`Self::predict`].
+    pub fn pose_address(&mut self) -> *mut f32 {
+        self.pose.as_mut_ptr()
+    }
+
+    /// Address of the predicted positions [3·n], world, metres.
+    pub fn positions_address(&self) -> *const f32 {
+        self.inner.positions().as_ptr()
+    }
+
+    /// Address of the vertex normals [3·n], world, unit length.
+    pub fn normals_address(&self) -> *const f32 {
+        self.inner.normals().as_ptr()
+    }
+
+    /// Predicts from the pose at [`Self::pose_address`]; false if that failed, and then [`Self::take_failure`] says why.
+    /// Not a `Result`: wasm-bindgen returns one as a fresh array, and a frame allocates nothing.
+    pub fn predict(&mut self, streams: Streams) -> bool {
+        self.failure = self.inner.predict(&self.pose, streams.into()).err();
+        self.failure.is_none()
+    }
+
+    /// Why the last prediction failed.
+    pub fn take_failure(&mut self) -> Option<js_sys::Error> {
+        self.failure.take().map(|error| to_js(&error))
+    }
+}

@@ -1,0 +1,3 @@
+export function chromium(): string;
+export function chromedriver(): string;
+export function flags(): string[];

@@ -1,0 +1,27 @@
+// Chromium and its driver: where they are, and the flags under which they draw WebGL and WebGPU without a screen.
+import { existsSync, readFileSync } from 'node:fs';
+import path from 'node:path';
+import { at, Stop } from './step.mjs';
+
+const names = { CHROMIUM: ['chromium', 'chromium-browser', 'google-chrome', 'google-chrome-stable'], CHROMEDRIVER: ['chromedriver'] };
+const folders = [...(process.env.PATH ?? '').split(path.delimiter), '/Applications/Google Chrome.app/Contents/MacOS', '/Applications/Chromium.app/Contents/MacOS'];
+
+/** Path of the program; the environment variable of that name has the first word. A missing one stops the script. */
+function find(variable) {
+  const set = process.env[variable];
+  const candidates = set ? [set] : names[variable].flatMap((name) => folders.map((folder) => path.join(folder, name)));
+  const found = candidates.find((file) => existsSync(file));
+  if (found) return found;
+  throw new Stop(`${names[variable][0]} is missing, and the browser tests cannot run without it. Install it (Debian: apt-get install chromium chromium-driver) or set ${variable} to its path.`);
+}
+
+/** Path of Chromium. */
+export const chromium = () => find('CHROMIUM');
+
+/** Path of chromedriver. */
+export const chromedriver = () => find('CHROMEDRIVER');
+
+/** The command line flags, read from where wasm-bindgen's test runner takes them too. */
+export function flags() {
+  return JSON.parse(readFileSync(at('tests', 'webdriver.json'), 'utf8'))['goog:chromeOptions'].args;
+}

@@ -1,0 +1,22 @@
+// npm run check: formatting, lints and types. Nothing is run, nothing is changed.
+import { buildLibrary } from './library.mjs';
+import { at, main, run, say, Stop } from './step.mjs';
+import { ensureToolchain } from './toolchain.mjs';
+
+await main(async () => {
+  await ensureToolchain();
+  await buildLibrary();
+  const checks = [
+    ['cargo', 'fmt', '--all', '--check'],
+    ['cargo', 'clippy', '--workspace', '--release', '--all-targets', '--', '--deny', 'warnings'],
+    ['cargo', 'clippy', '--package', 'ctsn-wasm', '--profile', 'wasm', '--target', 'wasm32-unknown-unknown', '--', '--deny', 'warnings'],
+    ['tsc', '-p', at('web', 'tests')],
+    ['tsc', '-p', at('www')],
+  ];
+  const failed = [];
+  for (const [program, ...args] of checks) {
+    say(`${program} ${args.join(' ')}`);
+    if ((await run(program, args)).status !== 0) failed.push(program);
+  }
+  if (failed.length > 0) throw new Stop(`${failed.length} of ${checks.length} checks failed.`);
+});

@@ -1,0 +1,71 @@
+// npm test: every suite, one after the other; a suite that cannot run has failed. Ends with the sum of all.
+import { existsSync, mkdirSync, readFileSync, rmSync } from 'node:fs';
+import { chromedriver, chromium } from './browser.mjs';
+import { buildLibrary } from './library.mjs';
+import { at, main, need, run, say, Stop } from './step.mjs';
+import { ensureToolchain } from './toolchain.mjs';
+
+/** `cargo test`, natively or in the browser: the sum of its result lines. */
+async function cargo(args, env = {}) {
+  const { status, output } = await run('cargo', ['test', '--release', ...args], { tee: true, env });
+  const lines = [...output.matchAll(/^test result: \w+\. (\d+) passed; (\d+) failed/gm)];
+  const sum = (part) => lines.reduce((total, line) => total + Number(line[part]), 0);
+  return settle(status, sum(1), sum(2));
+}
+
+/** Projects of vitest.config.ts. */
+async function vitest(...projects) {
+  const report = at('out', `${projects[0]}.json`);
+  rmSync(report, { force: true });
+  const { status } = await run('vitest', ['run', '--reporter=default', '--reporter=json', `--outputFile.json=${report}`,
+    ...projects.flatMap((project) => ['--project', project])], { env: { CHROMIUM: chromium() } });
+  if (!existsSync(report)) return settle(status || 1, 0, 0);
+  const { numPassedTests, numFailedTests } = JSON.parse(readFileSync(report, 'utf8'));
+  return settle(status, numPassedTests, numFailedTests);
+}
+
+/** A suite that ended badly without a failed test, or without any test, counts as one that failed. */
+function settle(status, passed, failed) {
+  return { passed, failed: failed || (status === 0 && passed > 0 ? 0 : 1) };
+}
+
+const suites = {
+  'native: the workspace': () => cargo(['--workspace']),
+  'browser: the core as WebAssembly with simd128': () =>
+    cargo(['--package', 'ctsn-tests', '--target', 'wasm32-unknown-unknown'], {
+      CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUNNER: 'wasm-bindgen-test-runner',
+      CHROMEDRIVER: chromedriver(),
+      WASM_BINDGEN_TEST_TIMEOUT: '600',
+    }),
+  'Node: the npm package': async () => {
+    await buildLibrary();
+    return vitest('package', 'oldest three');
+  },
+  'browser: the demo site': async () => {
+    await need('cargo', ['build', '--release', '--package', 'ctsn-author', '--bin', 'ctsn']);
+    await need('vite', ['build', at('www'), '--logLevel', 'warn']);
+    return vitest('browser');
+  },
+};
+
+await main(async () => {
+  chromium();
+  chromedriver();
+  await ensureToolchain();
+  mkdirSync(at('out'), { recursive: true });
+  const results = [];
+  for (const [name, suite] of Object.entries(suites)) {
+    say(name);
+    const started = Date.now();
+    const result = await suite().catch((error) => {
+      if (!(error instanceof Stop)) throw error;
+      console.error(`ctsn: ${error.message}`);
+      return settle(1, 0, 0);
+    });
+    results.push({ suite: name, ...result, seconds: Math.round((Date.now() - started) / 1000) });
+  }
+  console.table(results);
+  const sum = (key) => results.reduce((total, result) => total + result[key], 0);
+  console.log(`${sum('passed')} passed, ${sum('failed')} failed`);
+  if (sum('failed') > 0) process.exitCode = 1;
+});

@@ -1,0 +1,104 @@
+// The demo site, built and served, in headless Chromium: it moves, it agrees with the native result, it complains about nothing.
+import { fileURLToPath } from 'node:url';
+import { afterAll, afterEach, beforeAll, expect, test } from 'vitest';
+import type { StreamChoice } from 'ctsn';
+import { predictNatively } from './native.js';
+import { ask, out, Site } from './page.js';
+import { difference } from './safetensors.js';
+import tolerances from './tolerances.json' with { type: 'json' };
+
+const model = fileURLToPath(new URL('../../www/public/tunic.safetensors', import.meta.url));
+/** Software rendering takes its time. */
+const patience = { timeout: 60_000 };
+let site: Site;
+beforeAll(async () => (site = await Site.open()));
+afterEach(() => site.leave());
+afterAll(() => site?.close());
+
+test('the page plays, predicts every frame, and its controls work', async () => {
+  const { page, complaints } = await site.visit();
+  await page.waitForFunction(() => window.ctsnDemo!.predictions! >= 5);
+  expect(await ask(page, (demo) => demo.milliseconds, null)).toBeGreaterThan(0);
+  await expect.poll(() => page.textContent('#milliseconds'), patience).toMatch(/^\d+\.\d+ ms$/);
+  await page.getByLabel('Plain skinning').check({ force: true });
+  await page.getByLabel('Show the mesh').check();
+  await page.getByRole('button', { name: 'Pause' }).click();
+  expect(await page.getByRole('button', { name: 'Play' }).isVisible()).toBe(true);
+  const frozen = await page.textContent('#clock');
+  await page.waitForTimeout(500);
+  expect(await page.textContent('#clock')).toBe(frozen);
+  // At rest nothing is drawn, until the camera moves.
+  const before = (await ask(page, (demo) => demo.predictions, null))!;
+  await page.mouse.move(300, 300);
+  await page.mouse.wheel(0, -400);
+  await expect.poll(() => ask(page, (demo) => demo.predictions, null), patience).toBeGreaterThan(before);
+  await page.getByLabel('Time within the clip').fill('0.5');
+  await expect.poll(() => page.textContent('#clock'), patience).toMatch(/^0\.50 s of/);
+  await page.screenshot({ path: `${out}/mesh.png` });
+  expect(complaints).toEqual([]);
+});
+
+test('vertices and normals equal the native result of the same frames', async () => {
+  const { page, complaints } = await site.visit();
+  const clips = await ask(page, (demo) => demo.clips, null);
+  expect(Object.keys(clips).length).toBeGreaterThan(0);
+  const frames = Object.entries(clips).flatMap(([clip, length]) => [0.13, 0.7].map((part) => ({ clip, frame: Math.floor(part * length) })));
+  const captures = [];
+  for (const wanted of frames) captures.push(await ask(page, (demo, { clip, frame }) => demo.show(clip, frame), wanted));
+  const native = predictNatively(model, captures.map(({ pose }) => pose));
+  captures.forEach(({ clip, frame, vertex, positions, normals }, i) => {
+    const drawn = (values: Float32Array) => vertex.flatMap((at) => [...values.subarray(3 * at, 3 * at + 3)]);
+    const label = `${clip}, frame ${frame}`;
+    expect(positions.length, label).toBeGreaterThan(0);
+    expect(difference(positions, drawn(native.positions[i]!)), label).toBeLessThanOrEqual(tolerances.positions.most);
+    expect(difference(normals, drawn(native.normals[i]!)), label).toBeLessThanOrEqual(tolerances.normals.most);
+  });
+  // Frames that do not differ would compare nothing.
+  expect(difference(captures[0]!.positions, captures[1]!.positions)).toBeGreaterThan(0.005);
+  expect(complaints).toEqual([]);
+});
+
+test('the three sources of the cloth differ on the page', async () => {
+  const { page, complaints } = await site.visit();
+  const [[clip, length]] = Object.entries(await ask(page, (demo) => demo.clips, null)) as [[string, number]];
+  const frame = Math.floor(length / 2);
+  const found: Record<string, number[]> = {};
+  for (const streams of ['both', 'skeleton', 'none'] satisfies StreamChoice[]) {
+    const wanted = { clip, frame, streams };
+    found[streams] = (await ask(page, (demo, { clip, frame, streams }) => demo.show(clip, frame, streams as StreamChoice), wanted)).positions;
+    await page.screenshot({ path: `${out}/${streams}.png` });
+  }
+  // A tenth of a millimetre: what the smaller, the mesh stream, surely does somewhere.
+  expect(difference(found['both']!, found['skeleton']!)).toBeGreaterThan(1e-4);
+  expect(difference(found['skeleton']!, found['none']!)).toBeGreaterThan(1e-3);
+  expect(complaints).toEqual([]);
+});
+
+test('?pose=CLIP:FRAME freezes the page at that frame', async () => {
+  const first = await site.visit();
+  const [[clip, length]] = Object.entries(await ask(first.page, (demo) => demo.clips, null)) as [[string, number]];
+  const wanted = { clip, frame: Math.floor(length / 3) };
+  const shown = await ask(first.page, (demo, { clip, frame }) => demo.show(clip, frame), wanted);
+  await site.leave();
+  const { page, complaints } = await site.visit(`?pose=${encodeURIComponent(clip)}:${wanted.frame}`);
+  expect(await page.getByRole('button', { name: 'Play' }).isVisible()).toBe(true);
+  expect(await page.textContent('#clock')).toContain(`${(wanted.frame / 30).toFixed(2)} s of`);
+  const frozen = await ask(page, (demo, { clip, frame }) => demo.show(clip, frame), wanted);
+  expect(frozen.positions).toEqual(shown.positions);
+  await page.screenshot({ path: `${out}/demo.png` });
+  expect(complaints).toEqual([]);
+});
+
+test('a failure is told on the page: no model, a broken model, no such clip', async () => {
+  const tunic = '**/tunic.safetensors';
+  const missing = await site.visit('', (page) => page.route(tunic, (route) => route.fulfill({ status: 404 })));
+  expect(await missing.page.getByRole('alert').textContent()).toContain('HTTP 404');
+  const broken = await site.visit('', (page) => page.route(tunic, (route) => route.fulfill({ body: 'no model at all' })));
+  expect(await broken.page.getByRole('alert').textContent()).toContain('not a safetensors file');
+  await broken.page.screenshot({ path: `${out}/failure.png` });
+  const nowhere = await site.visit('?pose=no_such_clip:1');
+  expect(await nowhere.page.getByRole('alert').textContent()).toContain('no_such_clip');
+  for (const { complaints } of [missing, broken, nowhere]) {
+    expect(complaints.length).toBeGreaterThan(0);
+    }
+});

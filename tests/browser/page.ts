@@ -1,0 +1,70 @@
+// The built demo site, served, and Chromium without a screen to look at it. Whatever a page complains about is kept.
+import { mkdirSync } from 'node:fs';
+import { fileURLToPath } from 'node:url';
+import { chromium as playwright, type Browser, type Page } from 'playwright-core';
+import { preview, type PreviewServer } from 'vite';
+import { chromium, flags } from '../../scripts/browser.mjs';
+import type { Demo } from '../../www/src/hook.js';
+
+const root = fileURLToPath(new URL('../../', import.meta.url));
+
+/** Where screenshots are kept. */
+export const out = `${root}out`;
+
+/** An open page and its complaints: console errors and warnings, exceptions, requests that failed. */
+export interface Visit {
+  page: Page;
+  complaints: string[];
+}
+
+export class Site {
+  readonly #server: PreviewServer;
+  readonly #browser: Browser;
+
+  private constructor(server: PreviewServer, browser: Browser) {
+    this.#server = server;
+    this.#browser = browser;
+  }
+
+  /** Serves www/dist and starts the browser; throws when there is none. */
+  static async open(): Promise<Site> {
+    mkdirSync(out, { recursive: true });
+    const browser = await playwright.launch({ executablePath: chromium(), args: flags() });
+    return new Site(await preview({ root: `${root}www`, preview: { port: 0 }, logLevel: 'silent' }), browser);
+  }
+
+  /** Opens the page at `query`; `prepare` may arrange its network first. */
+  async visit(query = '', prepare: (page: Page) => Promise<unknown> = async () => {}): Promise<Visit> {
+    const page = await this.#browser.newPage({ viewport: { width: 960, height: 600 } });
+    // Software rendering on a shared machine: the first frame, with its shaders, may take half a minute.
+    page.setDefaultTimeout(120_000);
+    const complaints: string[] = [];
+    page.on('console', (message) => {
+      // Reading pixels back for a screenshot stalls a software renderer, and its driver says so.
+      const harmless = message.text().includes('GPU stall due to ReadPixels');
+      if (['error', 'warning'].includes(message.type()) && !harmless) complaints.push(`${message.type()}: ${message.text()}`);
+    });
+    page.on('pageerror', (error) => complaints.push(`exception: ${error.message}`));
+    page.on('requestfailed', (request) => complaints.push(`request: ${request.url()} ${request.failure()?.errorText}`));
+    await prepare(page);
+    await page.goto(new URL(query, this.#server.resolvedUrls!.local[0]).href);
+    await page.waitForFunction(() => Boolean(window.ctsnDemo?.ready) || Boolean(window.ctsnDemo?.error));
+    return { page, complaints };
+  }
+
+  /** Closes every page, so that none goes on drawing beside the next. */
+  async leave(): Promise<void> {
+    for (const context of this.#browser.contexts()) await context.close();
+  }
+
+  async close(): Promise<void> {
+    await this.#browser.close();
+    await this.#server.close();
+  }
+}
+
+/** Runs `work` on the page's handle. */
+export function ask<Argument, Answer>(page: Page, work: (demo: Demo, argument: Argument) => Answer, argument: Argument): Promise<Answer> {
+  // Playwright sends the text of a function; both travel as one expression.
+  return page.evaluate(`(${work.toString()})(window.ctsnDemo, ${JSON.stringify(argument ?? null)})`);
+}

@@ -1,0 +1,75 @@
+// The container format of models and poses, for tests that write and read such files: 8 bytes of header length, a JSON header, data.
+import { readFileSync } from 'node:fs';
+
+/** A tensor of float32. */
+export interface Tensor {
+  shape: number[];
+  values: Float32Array;
+}
+
+/** A file's float32 tensors and its metadata. */
+export function readTensors(file: string): { tensors: Record<string, Tensor>; metadata: Record<string, string> } {
+  const bytes = readFileSync(file);
+  const length = Number(bytes.readBigUInt64LE());
+  const { __metadata__: metadata = {}, ...entries } = JSON.parse(bytes.toString('utf8', 8, 8 + length));
+  const tensors: Record<string, Tensor> = {};
+  for (const [name, entry] of Object.entries(entries as Record<string, { dtype: string; shape: number[]; data_offsets: number[] }>)) {
+    if (entry.dtype !== 'F32') continue;
+    const data = bytes.subarray(8 + length + entry.data_offsets[0]!, 8 + length + entry.data_offsets[1]!);
+    tensors[name] = { shape: entry.shape, values: new Float32Array(Uint8Array.from(data).buffer) };
+  }
+  return { tensors, metadata };
+}
+
+/** The bytes of a file that holds these tensors. */
+export function writeTensors(tensors: Record<string, Tensor>): Buffer {
+  let end = 0;
+  const header: Record<string, unknown> = {};
+  const parts: Buffer[] = [];
+  for (const [name, { shape, values }] of Object.entries(tensors)) {
+    header[name] = { dtype: 'F32', shape, data_offsets: [end, (end += values.byteLength)] };
+    parts.push(Buffer.from(values.buffer, values.byteOffset, values.byteLength));
+  }
+  const json = JSON.stringify(header);
+  const text = Buffer.from(json.padEnd(json.length + ((8 - (json.length % 8)) % 8)));
+  const length = Buffer.alloc(8);
+  length.writeBigUInt64LE(BigInt(text.length));
+  return Buffer.concat([length, text, ...parts]);
+}
+
+/** Row-major 3×4 matrices [12·J] as column-major 4×4 ones [16·J], the order of three.js. */
+export function toColumns(rows: Float32Array): Float32Array {
+  const joints = rows.length / 12;
+  const columns = new Float32Array(16 * joints);
+  for (let joint = 0; joint < joints; joint++) {
+    for (let row = 0; row < 3; row++) {
+      for (let column = 0; column < 4; column++) columns[16 * joint + 4 * column + row] = rows[12 * joint + 4 * row + column]!;
+    }
+    columns[16 * joint + 15] = 1;
+  }
+  return columns;
+}
+
+/** The other way: column-major 4×4 as row-major 3×4. */
+export function toRows(columns: ArrayLike<number>): Float32Array {
+  const joints = columns.length / 16;
+  const rows = new Float32Array(12 * joints);
+  for (let joint = 0; joint < joints; joint++) {
+    for (let row = 0; row < 3; row++) {
+      for (let column = 0; column < 4; column++) rows[12 * joint + 4 * row + column] = columns[16 * joint + 4 * column + row]!;
+    }
+  }
+  return rows;
+}
+
+/** Largest absolute difference; a NaN anywhere is the answer. */
+export function difference(a: ArrayLike<number>, b: ArrayLike<number>): number {
+  if (a.length !== b.length) return NaN;
+  let largest = 0;
+  for (let i = 0; i < a.length; i++) {
+    const error = Math.abs(a[i]! - b[i]!);
+    if (!(error <= largest)) largest = error;
+    if (Number.isNaN(error)) return NaN;
+  }
+  return largest;
+}

@@ -1,0 +1,24 @@
+import { fileURLToPath } from 'node:url';
+import { defineConfig } from 'vitest/config';
+
+const at = (path: string) => fileURLToPath(new URL(path, import.meta.url));
+
+export default defineConfig({
+  test: {
+    // One test file after the other: the browser tests measure, and two cores are all that may be there.
+    fileParallelism: false,
+    testTimeout: 300_000,
+    hookTimeout: 300_000,
+    projects: [
+      // The package as it is published, on Node: with the newest three.js it is made for, and with the oldest.
+      { extends: true, test: { name: 'package', include: ['web/tests/*.test.ts'] } },
+      {
+        extends: true,
+        resolve: { alias: [{ find: /^three$/, replacement: at('node_modules/three-oldest/build/three.module.js') }] },
+        test: { name: 'oldest three', include: ['web/tests/three*.test.ts'] },
+      },
+      // The demo site in headless Chromium, and the module as it is shipped.
+      { extends: true, test: { name: 'browser', include: ['tests/browser/*.test.ts'] } },
+    ],
+  },
+});

@@ -1,0 +1,68 @@
+import { CtsnError } from './error.js';
+
+/** Bytes received so far, and bytes in all where that is known before the end. */
+export interface Progress {
+  loaded: number;
+  /** Absent when the server compresses on the way: then the announced length is not the length of the file. */
+  total?: number;
+}
+
+/** How to ask for a file. */
+export interface DownloadOptions {
+  onProgress?: ((progress: Progress) => void) | undefined;
+  /** Passed to `fetch`: headers, credentials, an abort signal. */
+  request?: RequestInit | undefined;
+}
+
+/** Fetches a file to its end, reporting true byte sizes; `file:` addresses work in Node. */
+export async function download(address: string | URL, { onProgress, request }: DownloadOptions = {}): Promise<Uint8Array<ArrayBuffer>> {
+  const local = readLocal(address);
+  if (local) {
+    onProgress?.({ loaded: local.length, total: local.length });
+    return local;
+  }
+  const response = await fetch(address, request).catch((cause: unknown) => {
+    if (request?.signal?.aborted) throw cause;
+    throw new CtsnError('fetch', `${String(address)}: no answer (${String(cause)})`, { cause });
+  });
+  if (!response.ok) {
+    throw new CtsnError('fetch', `${String(address)}: HTTP ${response.status} ${response.statusText}`.trim(), { status: response.status });
+  }
+  return collect(response, onProgress);
+}
+
+async function collect(response: Response, onProgress: DownloadOptions['onProgress']): Promise<Uint8Array<ArrayBuffer>> {
+  const announced = Number(response.headers.get('content-length'));
+  const total = announced > 0 && !response.headers.get('content-encoding') ? announced : undefined;
+  if (!response.body) return new Uint8Array(await response.arrayBuffer());
+  const parts: Uint8Array[] = [];
+  let loaded = 0;
+  const reader = response.body.getReader();
+  for (let part = await reader.read(); !part.done; part = await reader.read()) {
+    parts.push(part.value);
+    loaded += part.value.length;
+    onProgress?.(total === undefined ? { loaded } : { loaded, total });
+  }
+  const bytes = new Uint8Array(loaded);
+  let offset = 0;
+  for (const part of parts) {
+    bytes.set(part, offset);
+    offset += part.length;
+  }
+  return bytes;
+}
+
+interface NodeProcess {
+  getBuiltinModule?(name: 'node:fs'): { readFileSync(file: URL): Uint8Array };
+}
+
+/** Node's fetch refuses `file:`; asked for at run time, so that no bundler for the web sees an import. */
+function readLocal(address: string | URL): Uint8Array<ArrayBuffer> | undefined {
+  const fs = (globalThis as { process?: NodeProcess }).process?.getBuiltinModule?.('node:fs');
+  if (!fs || !String(address).startsWith('file:')) return undefined;
+  try {
+    return new Uint8Array(fs.readFileSync(new URL(address)));
+  } catch (cause) {
+    throw new CtsnError('fetch', `${String(address)}: ${String(cause)}`, { cause });
+  }
+}

@@ -1,0 +1,50 @@
+/**
+ * The wall between this package and the generated glue: the only file that imports it.
+ * Its twin on the other side is crate/wasm/src/lib.rs.
+ */
+import initialiseGlue, { Predictor, Streams } from './glue/ctsn.js';
+import { download } from './download.js';
+import { CtsnError } from './error.js';
+
+export { Streams };
+export type { Predictor };
+
+/** Where the WebAssembly module comes from, if not from beside this file. */
+export type WasmSource = string | URL | ArrayBuffer | Uint8Array<ArrayBuffer> | WebAssembly.Module;
+
+let starting: Promise<WebAssembly.Memory> | undefined;
+
+/**
+ * Compiles and starts the module, once per page: the source of the first call counts. A start that failed may be tried again.
+ */
+export function startModule(source?: WasmSource): Promise<WebAssembly.Memory> {
+  starting ??= compile(source).catch((error: unknown) => {
+    starting = undefined;
+    throw error;
+  });
+  return starting;
+}
+
+async function compile(source: WasmSource = new URL('./glue/ctsn_bg.wasm', import.meta.url)): Promise<WebAssembly.Memory> {
+  const module = typeof source === 'string' || source instanceof URL ? await download(source) : source;
+  try {
+    return (await initialiseGlue({ module_or_path: module })).memory;
+  } catch (cause) {
+    throw new CtsnError('wasm', `the WebAssembly module does not start: ${String(cause)}`, { cause });
+  }
+}
+
+/** Reads a model file [bytes] in the started module. */
+export function readModel(bytes: Uint8Array): Predictor {
+  try {
+    return new Predictor(bytes);
+  } catch (cause) {
+    throw fromCore(cause);
+  }
+}
+
+/** The core's error, whose `name` is its code, as ours; anything else is a fault in the module and passes through. */
+export function fromCore(cause: unknown): unknown {
+  const refused = cause instanceof Error && !(cause instanceof WebAssembly.RuntimeError);
+  return refused ? new CtsnError(cause.name, cause.message) : cause;
+}

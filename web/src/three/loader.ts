@@ -1,0 +1,43 @@
+import { Loader } from 'three';
+import type { Progress } from '../download.js';
+import { loadModel } from '../load.js';
+import type { ClothModel } from '../model.js';
+import type { WasmSource } from '../raw.js';
+
+/** `loadModel` as a three.js loader: path, loading manager, request headers and credentials apply. */
+export class ClothLoader extends Loader<ClothModel> {
+  #wasm: WasmSource | undefined;
+
+  /** Where the WebAssembly module comes from, if not from beside the package's files. */
+  setWasm(source: WasmSource): this {
+    this.#wasm = source;
+    return this;
+  }
+
+  override load(
+    url: string,
+    onLoad: (model: ClothModel) => void,
+    onProgress?: (event: ProgressEvent) => void,
+    onError?: (error: unknown) => void,
+  ): void {
+    const address = this.manager.resolveURL(this.path + url);
+    const request: RequestInit = { headers: this.requestHeader, credentials: this.withCredentials ? 'include' : 'same-origin' };
+    this.manager.itemStart(address);
+    loadModel(address, { request, wasm: this.#wasm, onProgress: (progress) => onProgress?.(toEvent(progress)) }).then(
+      (model) => {
+        onLoad(model);
+        this.manager.itemEnd(address);
+      },
+      (error: unknown) => {
+        if (onError) onError(error);
+        else console.error(error);
+        this.manager.itemError(address);
+        this.manager.itemEnd(address);
+      },
+    );
+  }
+}
+
+function toEvent({ loaded, total = 0 }: Progress): ProgressEvent {
+  return new ProgressEvent('progress', { lengthComputable: total > 0, loaded, total });
+}

@@ -1,0 +1,57 @@
+import { Box3, BufferAttribute, BufferGeometry, DynamicDrawUsage, Sphere } from 'three';
+import type { ClothModel, Frame } from '../model.js';
+
+/** The drawn surface of a model, empty until `drawFrame` fills it; its bounds are `drawFrame`'s work too. */
+export function createGeometry({ surface, triangles, vertexCount }: ClothModel): BufferGeometry {
+  const count = surface ? surface.vertex.length : vertexCount;
+  const geometry = new BufferGeometry();
+  geometry.setIndex(new BufferAttribute(surface ? surface.triangles : triangles, 1));
+  geometry.setAttribute('position', new BufferAttribute(new Float32Array(3 * count), 3).setUsage(DynamicDrawUsage));
+  geometry.setAttribute('normal', new BufferAttribute(new Float32Array(3 * count), 3).setUsage(DynamicDrawUsage));
+  if (surface?.uv.length) geometry.setAttribute('uv', new BufferAttribute(surface.uv, 2));
+  geometry.boundingBox = new Box3();
+  geometry.boundingSphere = new Sphere();
+  return geometry;
+}
+
+/** Copies a predicted frame to the geometry, seams split by `vertex` (drawn -> cloth), and sets its bounds. */
+export function drawFrame(geometry: BufferGeometry, { positions, normals }: Frame, vertex?: Uint32Array): void {
+  const position = geometry.getAttribute('position') as BufferAttribute;
+  const normal = geometry.getAttribute('normal') as BufferAttribute;
+  gather(positions, vertex, position.array as Float32Array);
+  gather(normals, vertex, normal.array as Float32Array);
+  position.needsUpdate = true;
+  normal.needsUpdate = true;
+  bound(positions, geometry.boundingBox!);
+  geometry.boundingBox!.getBoundingSphere(geometry.boundingSphere!);
+}
+
+/** from [3·n] -> to [3·d]. */
+function gather(from: Float32Array, vertex: Uint32Array | undefined, to: Float32Array): void {
+  if (!vertex) {
+    to.set(from);
+    return;
+  }
+  for (let drawn = 0, at = 0; drawn < vertex.length; drawn++) {
+    const source = 3 * vertex[drawn]!;
+    to[at++] = from[source]!;
+    to[at++] = from[source + 1]!;
+    to[at++] = from[source + 2]!;
+  }
+}
+
+function bound(positions: Float32Array, { min, max }: Box3): void {
+  min.setScalar(Infinity);
+  max.setScalar(-Infinity);
+  for (let at = 0; at < positions.length; at += 3) {
+    const x = positions[at]!;
+    const y = positions[at + 1]!;
+    const z = positions[at + 2]!;
+    if (x < min.x) min.x = x;
+    if (y < min.y) min.y = y;
+    if (z < min.z) min.z = z;
+    if (x > max.x) max.x = x;
+    if (y > max.y) max.y = y;
+    if (z > max.z) max.z = z;
+  }
+}

@@ -1,0 +1,33 @@
+import { Group, MeshBasicMaterial } from 'three';
+import { expect, test } from 'vitest';
+import { Cloth } from 'ctsn/three';
+import { allocatedBytes } from './allocation.js';
+import { characterOf } from './character.js';
+import { loadGolden } from './golden.js';
+
+/** The reading itself costs some bytes; the smallest JavaScript object has 12 a call. */
+const NOTHING = 8;
+
+test('predictCloth allocates nothing in JavaScript', async () => {
+  const { model, poses } = await loadGolden('tiny');
+  const options = { streams: 'skeleton' } as const;
+  const found = allocatedBytes(() => {
+    model.predictCloth(poses[0]!);
+    model.predictCloth(poses[0]!, options);
+  });
+  expect(found).toBeLessThan(NOTHING);
+  // The measure does see a small object.
+  expect(allocatedBytes(() => kept.push({ frame: model.predictCloth(poses[0]!, { ...options }) }))).toBeGreaterThan(NOTHING);
+  model.dispose();
+});
+
+test('Cloth.update allocates nothing', async () => {
+  const golden = await loadGolden('tiny');
+  const cloth = new Cloth(golden.model, characterOf(golden, 0), new MeshBasicMaterial());
+  new Group().add(cloth);
+  const options = { streams: 'both' } as const;
+  expect(allocatedBytes(() => cloth.update(options))).toBeLessThan(NOTHING);
+  golden.model.dispose();
+});
+
+const kept: object[] = [];

@@ -1,0 +1,126 @@
+import { createServer, type Server } from 'node:http';
+import { readFileSync } from 'node:fs';
+import type { AddressInfo } from 'node:net';
+import { afterAll, beforeAll, expect, test, vi } from 'vitest';
+import { CtsnError, loadModel, type ClothModel, type Pose } from 'ctsn';
+import { bytesOf, loadGolden } from './golden.js';
+
+const whole = bytesOf('small');
+
+/** The error that `work` ends with, which must be one of ours. */
+async function failure(work: () => unknown): Promise<CtsnError> {
+  try {
+    await work();
+  } catch (error) {
+    expect(error).toBeInstanceOf(CtsnError);
+    return error as CtsnError;
+  }
+  throw new Error('nothing was thrown');
+}
+
+/** `small` with its header's text changed; the length in front follows. */
+function withHeader(change: (header: string) => string): Uint8Array {
+  const length = new DataView(whole.buffer).getUint32(0, true);
+  const text = new TextEncoder().encode(change(new TextDecoder().decode(whole.subarray(8, 8 + length))));
+  const bytes = new Uint8Array(8 + text.length + whole.length - 8 - length);
+  new DataView(bytes.buffer).setUint32(0, text.length, true);
+  bytes.set(text, 8);
+  bytes.set(whole.subarray(8 + length), 8 + text.length);
+  return bytes;
+}
+
+test('a file cut off anywhere is refused', async () => {
+  for (let part = 0; part < 24; part++) {
+    const { code, message } = await failure(() => loadModel(whole.subarray(0, Math.floor((part / 24) * whole.length))));
+    expect(['not_safetensors', 'truncated']).toContain(code);
+    expect(message).toMatch(/\d/);
+  }
+});
+
+test.each([
+  ['no model at all', new TextEncoder().encode('<!doctype html><title>Not found</title>'), 'not_safetensors'],
+  ['a header that lies about its length', Uint8Array.from(whole, (byte, i) => (i < 8 ? 255 : byte)), 'not_safetensors'],
+  ['a safetensors file of something else', withHeader((text) => text.replace('"ctsn"', '"cats"')), 'not_model'],
+  ['a missing tensor', withHeader((text) => text.replace('"cloth.rest"', '"cloth.nest"')), 'missing_tensor'],
+  ['a shape that does not fit', withHeader((text) => text.replace('[600,3]', '[900,2]')), 'shape'],
+])('%s', async (_, bytes, code) => {
+  const error = await failure(() => loadModel(bytes));
+  expect(error.code).toBe(code);
+  expect(error.name).toBe('CtsnError');
+});
+
+test('a wrong argument', async () => {
+  expect((await failure(() => loadModel(7 as unknown as string))).code).toBe('argument');
+  const { model, poses } = await loadGolden('tiny');
+  expect((await failure(() => model.predictCloth(poses[0]!, { streams: 'mesh' as 'both' }))).code).toBe('argument');
+  model.dispose();
+});
+
+test('poses: wrong length, missing joint, NaN; the model lives on', async () => {
+  const { model, poses, positions } = await loadGolden('tiny');
+  const refuse = (pose: Pose) => failure(() => model.predictCloth(pose));
+  expect(await refuse(poses[0]!.subarray(1))).toMatchObject({ code: 'joint_count', message: expect.stringMatching(/48.*47/) as string });
+  expect(await refuse(new Float32Array())).toMatchObject({ code: 'joint_count' });
+  const [first, second, third] = model.joints as [string, string, string];
+  const identity = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
+  expect(await refuse({ [first]: identity, [third]: identity })).toMatchObject({ code: 'missing_joint', joint: second, message: expect.stringContaining(second) as string });
+  expect(await refuse({ [first]: identity, [second]: [1, 2], [third]: identity })).toMatchObject({ code: 'joint_count' });
+  expect(await refuse(Float32Array.from(poses[0]!, (value, i) => (i === 17 ? NaN : value)))).toMatchObject({ code: 'not_finite' });
+  expect(await refuse(poses[0]!.map(() => Infinity))).toMatchObject({ code: 'not_finite' });
+  expect(model.predictCloth(poses[0]!).positions[0]).toBeCloseTo(positions[0]![0]!, 5);
+  model.dispose();
+});
+
+test('a model that was disposed of', async () => {
+  const { model, poses } = await loadGolden('tiny');
+  expect(model.disposed).toBe(false);
+  model.dispose();
+  model.dispose();
+  expect(model.disposed).toBe(true);
+  expect((await failure(() => model.predictCloth(poses[0]!))).code).toBe('disposed');
+});
+
+let server: Server;
+let address: string;
+beforeAll(async () => {
+  server = createServer((request, response) => {
+    if (request.url !== '/small') return void response.writeHead(404).end();
+    response.writeHead(200, { 'content-length': whole.length });
+    response.write(whole.subarray(0, 1000));
+    setTimeout(() => response.end(whole.subarray(1000)), 50);
+  });
+  await new Promise<void>((listening) => server.listen(0, '127.0.0.1', listening));
+  address = `http://127.0.0.1:${(server.address() as AddressInfo).port}`;
+});
+afterAll(() => server.close());
+
+test('loading from an address, with true sizes on the way', async () => {
+  const steps: { loaded: number; total?: number }[] = [];
+  const model: ClothModel = await loadModel(`${address}/small`, { onProgress: (progress) => steps.push(progress) });
+  expect(model.vertexCount).toBe(600);
+  expect(steps.length).toBeGreaterThan(1);
+  expect(steps.every(({ total }) => total === whole.length)).toBe(true);
+  expect(steps.at(-1)!.loaded).toBe(whole.length);
+  model.dispose();
+});
+
+test('loading that fails: no such file, no server, no local file, aborted', async () => {
+  expect(await failure(() => loadModel(`${address}/none`))).toMatchObject({ code: 'fetch', status: 404 });
+  const unanswered = await failure(() => loadModel('http://127.0.0.1:1/'));
+  expect(unanswered).toMatchObject({ code: 'fetch' });
+  expect(unanswered.status).toBeUndefined();
+  expect(await failure(() => loadModel(new URL('none.safetensors', import.meta.url)))).toMatchObject({ code: 'fetch' });
+  await expect(loadModel(`${address}/small`, { request: { signal: AbortSignal.abort() } })).rejects.toThrow(/abort/);
+});
+
+test('the module may be given; one that is broken is refused, and the next try may succeed', async () => {
+  // A copy of the package that has not started its module yet.
+  vi.resetModules();
+  const fresh = await import('ctsn');
+  const broken = fresh.loadModel(whole, { wasm: new Uint8Array([0, 97, 115, 109, 1]) });
+  await expect(broken).rejects.toMatchObject({ code: 'wasm' });
+  const wasm = new WebAssembly.Module(readFileSync(new URL('../dist/glue/ctsn_bg.wasm', import.meta.url)));
+  const model = await fresh.loadModel(whole, { wasm });
+  expect(model.vertexCount).toBe(600);
+  model.dispose();
+});

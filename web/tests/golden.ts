@@ -1,0 +1,38 @@
+// The golden models of tests/golden, as the tests of this package use them.
+import { readFileSync } from 'node:fs';
+import { fileURLToPath } from 'node:url';
+import { loadModel, type ClothModel } from 'ctsn';
+import { readTensors, toColumns } from '../../tests/browser/safetensors.js';
+
+const path = (file: string) => fileURLToPath(new URL(`../../tests/golden/${file}`, import.meta.url));
+
+/** Bytes of a golden model file. */
+export const bytesOf = (name: string): Uint8Array => new Uint8Array(readFileSync(path(`${name}.safetensors`)));
+
+export interface Golden {
+  model: ClothModel;
+  /** Poses in three.js order, each [16·J]. */
+  poses: Float32Array[];
+  /** Expected positions per pose, each [3·n]. */
+  positions: Float32Array[];
+  /** Largest absolute error a position may have, metres. */
+  tolerance: number;
+}
+
+/** A golden model, loaded, with what it must answer. */
+export async function loadGolden(name: string): Promise<Golden> {
+  const { tensors, metadata } = readTensors(path(`${name}.golden.safetensors`));
+  const rows = split(tensors['pose.joints']!.values, tensors['pose.joints']!.shape[0]!);
+  const { values, shape } = tensors['expected.positions']!;
+  return {
+    model: await loadModel(bytesOf(name)),
+    poses: rows.map(toColumns),
+    positions: split(values, shape[0]!),
+    tolerance: (JSON.parse(metadata['tolerance']!) as { positions: number }).positions,
+  };
+}
+
+function split(values: Float32Array, count: number): Float32Array[] {
+  const length = values.length / count;
+  return Array.from({ length: count }, (_, i) => values.subarray(i * length, (i + 1) * length));
+}

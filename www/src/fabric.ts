@@ -1,0 +1,60 @@
+import { Color, DoubleSide, MeshPhysicalMaterial, type BufferGeometry } from 'three';
+
+const pattern = /* glsl */ `
+  #ifdef USE_UV
+    vec2 thread = vUv * fabricMetres;
+    // Both patterns fade out where a pixel covers more than half a period, instead of flickering.
+    vec2 size = fwidth(thread);
+    float stripeFade = 1.0 - smoothstep(0.15, 0.5, size.x / stripeEvery);
+    float across = abs(fract(thread.x / stripeEvery) - 0.5) * stripeEvery;
+    float stripe = 1.0 - smoothstep(0.0025, 0.0025 + max(size.x, 0.0004), across);
+    diffuseColor.rgb = mix(diffuseColor.rgb, stripeColour, 0.85 * stripe * stripeFade);
+    vec2 weave = sin(thread * (6.28318 / 0.0032));
+    float weaveFade = 1.0 - smoothstep(0.15, 0.5, max(size.x, size.y) / 0.0032);
+    diffuseColor.rgb *= 1.0 + 0.13 * weave.x * weave.y * weaveFade;
+  #endif
+  if (!gl_FrontFacing) diffuseColor.rgb *= 0.62;
+`;
+
+/** Woven cloth with thin stripes along the texture's v, darker inside. The pattern is measured in metres on `geometry`. */
+export function createFabric(geometry: BufferGeometry): MeshPhysicalMaterial {
+  const material = new MeshPhysicalMaterial({
+    color: '#3f6482',
+    roughness: 0.86,
+    sheen: 0.6,
+    sheenRoughness: 0.5,
+    sheenColor: new Color('#c4d3e0'),
+    side: DoubleSide,
+  });
+  // three declares vUv only for a material that says it needs it.
+  material.defines = { ...material.defines, USE_UV: '' };
+  if (!geometry.hasAttribute('uv')) delete material.defines['USE_UV'];
+  const uniforms = {
+    fabricMetres: { value: metresPerUnit(geometry) },
+    stripeEvery: { value: 0.045 },
+    stripeColour: { value: new Color('#e9dfcc') },
+  };
+  material.onBeforeCompile = (shader) => {
+    Object.assign(shader.uniforms, uniforms);
+    shader.fragmentShader = shader.fragmentShader
+      .replace('#include <common>', '#include <common>\nuniform float fabricMetres, stripeEvery;\nuniform vec3 stripeColour;')
+      .replace('#include <color_fragment>', `#include <color_fragment>\n${pattern}`);
+  };
+  return material;
+}
+
+/** Metres of cloth per unit of texture coordinate: the root of the ratio of both areas. */
+function metresPerUnit(geometry: BufferGeometry): number {
+  const { position, uv } = geometry.attributes;
+  const index = geometry.index;
+  if (!position || !uv || !index) return 1;
+  let [cloth, texture] = [0, 0];
+  for (let i = 0; i < index.count; i += 3) {
+    const [a, b, c] = [index.getX(i), index.getX(i + 1), index.getX(i + 2)];
+    const edge = (to: number) => [position.getX(to) - position.getX(a), position.getY(to) - position.getY(a), position.getZ(to) - position.getZ(a)] as const;
+    const [e, f] = [edge(b), edge(c)];
+    cloth += Math.hypot(e[1] * f[2] - e[2] * f[1], e[2] * f[0] - e[0] * f[2], e[0] * f[1] - e[1] * f[0]);
+    texture += Math.abs((uv.getX(b) - uv.getX(a)) * (uv.getY(c) - uv.getY(a)) - (uv.getX(c) - uv.getX(a)) * (uv.getY(b) - uv.getY(a)));
+  }
+  return texture > 0 ? Math.sqrt(cloth / texture) : 1;
+}

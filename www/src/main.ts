@@ -1,0 +1,76 @@
+import { loadModel, type Progress, type StreamChoice } from 'ctsn';
+import { FileLoader } from 'three';
+import { Character, RATE } from './character.js';
+import { RunningDemo } from './demo.js';
+import { readAddress, type Demo } from './hook.js';
+import { element, formatBytes, Panel } from './panel.js';
+import { Stage } from './stage.js';
+
+const hook: Partial<Demo> = (window.ctsnDemo = { ready: false });
+
+/** Bytes received and expected, per file. */
+const received = new Map<string, Progress>();
+
+function showProgress(file: string, progress: Progress): void {
+  received.set(file, progress);
+  let [loaded, total] = [0, 0];
+  for (const part of received.values()) {
+    loaded += part.loaded;
+    total += part.total ?? NaN;
+  }
+  const bar = element<HTMLProgressElement>('progress');
+  if (Number.isFinite(total)) Object.assign(bar, { max: total, value: loaded });
+  element('progress-text').textContent = `Loading the character and its tunic: ${formatBytes(loaded)}`;
+}
+
+async function load(): Promise<[Character, Awaited<ReturnType<typeof loadModel>>, number]> {
+  const body = new FileLoader().setResponseType('arraybuffer');
+  const base = import.meta.env.BASE_URL;
+  const [glb, model] = await Promise.all([
+    body.loadAsync(`${base}mannequin.glb`, ({ loaded, total, lengthComputable }) => {
+      showProgress('character', lengthComputable ? { loaded, total } : { loaded });
+    }),
+    loadModel(`${base}tunic.safetensors`, { onProgress: (progress) => showProgress('tunic', progress) }),
+  ]);
+  return [await Character.parse(glb as ArrayBuffer), model, received.get('tunic')?.loaded ?? 0];
+}
+
+async function start(): Promise<void> {
+  const stage = new Stage(element<HTMLCanvasElement>('stage'));
+  const [character, model, bytes] = await load();
+  const panel = new Panel(character.clips, model.vertexCount, bytes);
+  const demo = new RunningDemo(stage, character, model, panel);
+  element('loading').hidden = true;
+
+  const address = new URL(location.href);
+  const streams = (address.searchParams.get('streams') ?? 'both') as StreamChoice;
+  const frozen = readAddress(address);
+  if (frozen) demo.freeze(frozen.clip, frozen.frame, streams);
+  else panel.choose(streams);
+  demo.run();
+
+  const clips = Object.fromEntries(character.clips.map((clip) => [clip, Math.floor(character.length(clip) * RATE)]));
+  Object.defineProperties(hook, {
+    predictions: { get: () => demo.predictions },
+    milliseconds: { get: () => demo.meter.median },
+  });
+  Object.assign(hook, {
+    clips,
+    ready: true,
+    show(clip: string, frame: number, choice: StreamChoice = 'both') {
+      demo.freeze(clip, frame, choice);
+      return demo.capture();
+    },
+  } satisfies Partial<Demo>);
+}
+
+function fail(error: unknown): void {
+  hook.error = String(error);
+  element('loading').hidden = true;
+  element('failure').hidden = false;
+  element('failure-text').textContent = error instanceof Error ? error.message : String(error);
+}
+
+window.addEventListener('error', ({ error, message }) => fail(error ?? message));
+window.addEventListener('unhandledrejection', ({ reason }) => fail(reason));
+void start();

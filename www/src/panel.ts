@@ -1,0 +1,105 @@
+import type { StreamChoice } from 'ctsn';
+
+/** What the controls ask for. */
+export interface Wishes {
+  playing: boolean;
+  streams: StreamChoice;
+  clip: string;
+  wireframe: boolean;
+}
+
+/** What the page shows of the running demo. */
+export interface Figures {
+  /** Median milliseconds of a prediction. */
+  milliseconds: number;
+  /** Seconds into the clip, and its length. */
+  time: number;
+  duration: number;
+}
+
+const explanations: Record<StreamChoice, string> = {
+  both: 'Both streams: the drape of the body’s pose, and the folds that nearby vertices settle among themselves.',
+  skeleton: 'Only what the skeleton’s pose says: the coarse drape, without the folds of the mesh stream.',
+  none: 'No network: the tunic bends with the bones, as game characters’ clothes usually do.',
+};
+
+/** The element with that id, which index.html promises. */
+export function element<T extends HTMLElement>(id: string): T {
+  return document.getElementById(id) as T;
+}
+
+/** The controls of the page; `wishes` is what they say now. */
+export class Panel {
+  readonly wishes: Wishes = { playing: true, streams: 'both', clip: '', wireframe: false };
+  /** Called when the person drags the time. */
+  onScrub: (seconds: number) => void = () => {};
+  /** Called when anything else is chosen. */
+  onChange: () => void = () => {};
+
+  readonly #play = element<HTMLButtonElement>('play');
+  readonly #time = element<HTMLInputElement>('time');
+  readonly #clip = element<HTMLSelectElement>('clip');
+  readonly #clock = element<HTMLOutputElement>('clock');
+  readonly #milliseconds = element<HTMLOutputElement>('milliseconds');
+
+  constructor(clips: readonly string[], vertices: number, bytes: number) {
+    this.#clip.append(...clips.map((name) => new Option(name.replaceAll('_', ' '), name)));
+    this.wishes.clip = clips[0] ?? '';
+    element('vertices').textContent = vertices.toLocaleString('en');
+    element('size').textContent = formatBytes(bytes);
+    this.#listen();
+    this.choose('both');
+    element('panel').hidden = false;
+  }
+
+  /** Shows the figures of the frame just drawn. */
+  show({ milliseconds, time, duration }: Figures): void {
+    this.#time.max = String(duration);
+    this.#time.value = String(time);
+    this.#clock.value = `${time.toFixed(2)} s of ${duration.toFixed(2)} s`;
+    this.#milliseconds.value = `${milliseconds.toFixed(milliseconds < 10 ? 2 : 1)} ms`;
+  }
+
+  /** Starts or stops the motion. */
+  play(playing: boolean): void {
+    this.wishes.playing = playing;
+    this.#play.textContent = playing ? 'Pause' : 'Play';
+    this.#play.setAttribute('aria-pressed', String(playing));
+  }
+
+  /** Chooses where the cloth comes from. */
+  choose(streams: StreamChoice): void {
+    this.wishes.streams = streams;
+    document.querySelector<HTMLInputElement>(`input[name=streams][value=${streams}]`)!.checked = true;
+    element('explanation').textContent = explanations[streams];
+    this.onChange();
+  }
+
+  /** Chooses a clip. */
+  select(clip: string): void {
+    this.wishes.clip = this.#clip.value = clip;
+    this.onChange();
+  }
+
+  #listen(): void {
+    this.#play.addEventListener('click', () => this.play(!this.wishes.playing));
+    this.#clip.addEventListener('change', () => this.select(this.#clip.value));
+    this.#time.addEventListener('input', () => {
+      this.play(false);
+      this.onScrub(Number(this.#time.value));
+    });
+    for (const radio of document.querySelectorAll<HTMLInputElement>('input[name=streams]')) {
+      radio.addEventListener('change', () => this.choose(radio.value as StreamChoice));
+    }
+    const wireframe = element<HTMLInputElement>('wireframe');
+    wireframe.addEventListener('change', () => {
+      this.wishes.wireframe = wireframe.checked;
+      this.onChange();
+    });
+  }
+}
+
+/** 12.3 MB, 45 kB: decimal units, as downloads are counted. */
+export function formatBytes(bytes: number): string {
+  return bytes < 1e6 ? `${(bytes / 1e3).toFixed(0)} kB` : `${(bytes / 1e6).toFixed(1)} MB`;
+}
