@@ -13,6 +13,8 @@ const SLIDING_SHARE: f64 = 0.05;
 /// A vertex near the body, the body replaced by the tangent plane of its signed distance.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Contact {
+    /// Cloth vertex.
+    pub vertex: usize,
     /// Unit normal of the plane.
     pub normal: DVec3,
     /// `d(x) = normal · x - plane`.

@@ -7,7 +7,7 @@ use super::cloth::Cloth;
 use super::contact::{Contact, Pin};
 use super::material::GRAVITY;
 use super::matrix::{Address, Matrix, Pattern};
-use super::posed::PosedBody;
+use super::posed::{Hit, PosedBody};
 use super::settings::Settings;
 use crate::Result;
 
@@ -26,7 +26,7 @@ const EXACT_ABOVE: f64 = 10.0;
 const CORRECTIONS: usize = 2;
 /// Factor by which a contact that gave way too far is stiffened, and how often it may be.
 const STIFFENING: f64 = 3.0;
-const STIFFEST: f64 = 1e4;
+const STIFFEST: f64 = 30.0;
 
 /// Hessian layout of a cloth: the pattern and where each element's blocks lie.
 pub(super) struct Layout {
@@ -86,8 +86,8 @@ pub(super) struct Solver<'a> {
     pub anchors: Vec<DVec3>,
     /// Last face each vertex was near.
     pub tracked: Vec<Option<u32>>,
-    /// Contacts of the last iteration.
-    pub contacts: Vec<Option<Contact>>,
+    /// Contact planes of the last iteration, up to two per vertex.
+    contacts: Vec<Contact>,
     /// Vertices held in place.
     pub pins: Vec<Pin>,
     /// Whether contacts that give way are stiffened: at rest, not while the body moves.
@@ -99,6 +99,9 @@ pub(super) struct Solver<'a> {
     gradient: Vec<DVec3>,
     /// Contact stiffness per mass, 1/s² [n].
     stiffness: Vec<f64>,
+    /// Vertices squeezed between two sides of the body, and left alone until it moves [n]. Where a skinned body cuts
+    /// into itself no place is outside all of it; pushing from side to side never came to rest.
+    pub pinched: Vec<bool>,
     /// Lower bound of the distance to the body [n].
     clearance: Vec<f64>,
 }
@@ -115,13 +118,14 @@ impl<'a> Solver<'a> {
             anchors: positions.clone(),
             positions,
             tracked: vec![None; n],
-            contacts: vec![None; n],
+            contacts: Vec::new(),
             pins: Vec::new(),
             stiffening: false,
             exact: false,
             iterations: 0,
             gradient: vec![DVec3::ZERO; n],
             stiffness: vec![settings.contact_stiffness; n],
+            pinched: vec![false; n],
             clearance: vec![0.0; n],
         }
     }
@@ -129,6 +133,7 @@ impl<'a> Solver<'a> {
     /// Forgets distances: to be called when the body or the positions were changed from outside.
     pub fn moved(&mut self) {
         self.clearance.fill(0.0);
+        self.pinched.fill(false);
     }
 
     /// Contacts, static forces and the Hessian for the proximal time step `h` seconds, against the posed body, if any.
@@ -169,39 +174,47 @@ impl<'a> Solver<'a> {
         self.probe(body, h)
     }
 
-    /// Finds the contact planes; the least signed distance.
+    /// Finds the contact planes; the least signed distance of a vertex that is not pinched.
     fn detect(&mut self, body: Option<&PosedBody>) -> f64 {
         let mut least = f64::INFINITY;
-        let offset = self.settings.thickness;
+        let thickness = self.settings.thickness;
+        self.contacts.clear();
         let Some(body) = body else { return least };
         for i in 0..self.positions.len() {
-            if self.clearance[i] > offset + MARGIN {
-                self.contacts[i] = None;
+            if self.pinched[i] || self.clearance[i] > thickness + MARGIN {
                 continue;
             }
-            let x = self.positions[i];
-            let hit = body.closest(x, self.tracked[i], 2.0 * (offset + MARGIN).max(0.05));
-            self.clearance[i] = hit.map_or(offset + 2.0 * MARGIN, |hit| hit.distance.max(0.0));
-            self.contacts[i] = hit.filter(|hit| hit.distance < offset + MARGIN).map(|hit| {
-                least = least.min(hit.distance);
-                let limit = STIFFEST * self.settings.contact_stiffness;
-                if self.stiffening && hit.distance < 0.25 * offset && self.stiffness[i] < limit {
-                    self.stiffness[i] *= STIFFENING;
-                }
-                let stiffness = self.stiffness[i] * self.cloth.masses[i];
-                let force = stiffness * (offset - hit.distance).max(0.0);
-                Contact {
-                    normal: hit.normal,
-                    plane: hit.normal.dot(x) - hit.distance,
-                    offset,
-                    stiffness,
-                    grip: self.cloth.friction * force,
-                    anchor: self.anchors[i],
-                }
-            });
-            self.tracked[i] = hit.map(|hit| hit.face).or(self.tracked[i]);
+            let (x, reach) = (self.positions[i], thickness + 2.0 * MARGIN);
+            let hit = body.closest(x, self.tracked[i], reach);
+            self.clearance[i] = hit.map_or(reach, |hit| hit.distance.max(0.0));
+            let Some(hit) = hit.filter(|hit| hit.distance < thickness + MARGIN) else { continue };
+            if body.is_squeezed(x, &hit, self.tracked[i], 2.0 * thickness, reach) {
+                self.pinched[i] = true;
+                continue;
+            }
+            self.tracked[i] = Some(hit.face);
+            least = least.min(hit.distance);
+            let limit = STIFFEST * self.settings.contact_stiffness;
+            if self.stiffening && hit.distance < 0.25 * thickness && self.stiffness[i] < limit {
+                self.stiffness[i] *= STIFFENING;
+            }
+            self.contacts.push(self.contact(i, &hit, self.cloth.friction));
+            if hit.distance < 1.5 * thickness
+                && let Some(second) = body.across_crease(x, &hit, 2.0 * thickness)
+            {
+                self.contacts.push(self.contact(i, &second, 0.0));
+            }
         }
         least
+    }
+
+    fn contact(&self, vertex: usize, hit: &Hit, friction: f64) -> Contact {
+        let offset = self.settings.thickness;
+        let stiffness = self.stiffness[vertex] * self.cloth.masses[vertex];
+        let force = stiffness * (offset - hit.distance).max(0.0);
+        let plane = hit.normal.dot(self.positions[vertex]) - hit.distance;
+        let (grip, anchor) = (friction * force, self.anchors[vertex]);
+        Contact { vertex, normal: hit.normal, plane, offset, stiffness, grip, anchor }
     }
 
     /// Static gradient, and the Hessian of the proximal problem.
@@ -228,13 +241,12 @@ impl<'a> Solver<'a> {
         for i in 0..x.len() {
             let mass = cloth.masses[i];
             gradient[i].y += mass * GRAVITY;
-            let mut block = DMat3::from_diagonal(DVec3::splat(mass / (h * h)));
-            if let Some(contact) = &self.contacts[i] {
-                let (force, stiffness) = contact.derivatives(x[i]);
-                gradient[i] += force;
-                block += stiffness;
-            }
-            matrix.add(layout.diagonal[i], block, true);
+            matrix.add(layout.diagonal[i], DMat3::from_diagonal(DVec3::splat(mass / (h * h))), true);
+        }
+        for contact in &self.contacts {
+            let (force, stiffness) = contact.derivatives(x[contact.vertex]);
+            gradient[contact.vertex] += force;
+            matrix.add(layout.diagonal[contact.vertex], stiffness, true);
         }
         for pin in &self.pins {
             let (force, stiffness) = pin.derivatives(x[pin.vertex]);
@@ -249,7 +261,7 @@ impl<'a> Solver<'a> {
         let membrane: f64 = cloth.triangles.iter().map(|t| t.energy(cloth.lame, x)).sum();
         let bending: f64 = cloth.hinges.iter().map(|h| h.energy(x)).sum();
         let weight: f64 = cloth.masses.iter().zip(x).map(|(m, x)| m * GRAVITY * x.y).sum();
-        let contact: f64 = self.contacts.iter().zip(x).map(|(c, x)| c.as_ref().map_or(0.0, |c| c.energy(*x))).sum();
+        let contact: f64 = self.contacts.iter().map(|contact| contact.energy(x[contact.vertex])).sum();
         let pins: f64 = self.pins.iter().map(|pin| pin.energy(x[pin.vertex])).sum();
         membrane + bending + weight + contact + pins
     }
@@ -266,9 +278,7 @@ impl<'a> Solver<'a> {
             let forces = hinge.derivatives(x, false, |_, _, _| {});
             (0..4).for_each(|a| gradient[hinge.vertices[a]] += forces[a]);
         }
-        for (i, contact) in self.contacts.iter().enumerate() {
-            gradient[i] += contact.as_ref().map_or(DVec3::ZERO, |contact| contact.derivatives(x[i]).0);
-        }
+        self.contacts.iter().for_each(|contact| gradient[contact.vertex] += contact.derivatives(x[contact.vertex]).0);
         self.pins.iter().for_each(|pin| gradient[pin.vertex] += pin.derivatives(x[pin.vertex]).0);
         gradient
     }
@@ -337,10 +347,10 @@ impl<'a> Solver<'a> {
     fn accept(&mut self, trial: Vec<DVec3>) {
         for i in 0..trial.len() {
             self.clearance[i] -= trial[i].distance(self.positions[i]);
-            self.anchors[i] = match &self.contacts[i] {
-                Some(contact) if contact.grip > 0.0 => contact.slipped_anchor(trial[i]),
-                _ => trial[i],
-            };
+        }
+        self.anchors.copy_from_slice(&trial);
+        for contact in self.contacts.iter().filter(|contact| contact.grip > 0.0) {
+            self.anchors[contact.vertex] = contact.slipped_anchor(trial[contact.vertex]);
         }
         self.positions = trial;
     }

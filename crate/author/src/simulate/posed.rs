@@ -11,6 +11,20 @@ const DEPTH: f64 = 0.05;
 /// The same for a face turned against the one the point was last near: the far side of a thin part, or another limb.
 const DEPTH_OPPOSED: f64 = 0.012;
 
+/// Two sides of a crease differ by at least the angle with this cosine.
+const CREASE: f64 = 0.75;
+
+/// Which faces a search considers.
+#[derive(Clone, Copy)]
+enum Faces {
+    /// All.
+    All,
+    /// Those that look the way of the tracked one.
+    Own,
+    /// Those that look another way than this normal.
+    Across(DVec3),
+}
+
 /// The closest point of the body.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Hit {
@@ -59,7 +73,27 @@ impl<'a> PosedBody<'a> {
     /// The closest body point within `reach` metres, or none. `tracked`: the face found before, which speeds up the
     /// search and tells near sides from far ones.
     pub fn closest(&self, point: DVec3, tracked: Option<u32>, reach: f64) -> Option<Hit> {
-        let guess = tracked.and_then(|face| Some((face, self.candidate(face, point, tracked, reach * reach)?)));
+        self.search(point, tracked, reach, Faces::All)
+    }
+
+    /// The closest point of another side of a concave crease than that of `first`, within `reach` metres.
+    pub fn across_crease(&self, point: DVec3, first: &Hit, reach: f64) -> Option<Hit> {
+        let hit = self.search(point, Some(first.face), reach, Faces::Across(first.normal))?;
+        (hit.normal.dot(first.normal) < CREASE).then_some(hit)
+    }
+
+    /// Whether a point is squeezed between two sides of a body that cuts into itself: behind a face that looks against
+    /// the `tracked` one, and not `gap` metres clear of its own side.
+    pub fn is_squeezed(&self, point: DVec3, hit: &Hit, tracked: Option<u32>, gap: f64, reach: f64) -> bool {
+        let opposed = tracked.is_some_and(|old| self.face_normals[old as usize].dot(hit.normal) <= 0.0);
+        hit.distance < 0.0
+            && opposed
+            && self.search(point, tracked, reach, Faces::Own).is_some_and(|own| own.distance <= gap)
+    }
+
+    fn search(&self, point: DVec3, tracked: Option<u32>, reach: f64, faces: Faces) -> Option<Hit> {
+        let side = tracked.map(|face| self.face_normals[face as usize]);
+        let guess = tracked.and_then(|face| Some((face, self.candidate(face, point, side, faces, reach * reach)?)));
         let bound = guess.as_ref().map_or(reach * reach, |(_, (squared, _))| *squared);
         let p = point.to_array();
         let box_distance = |node: &BvhNode, _: f64| {
@@ -67,7 +101,8 @@ impl<'a> PosedBody<'a> {
             let gap = |k: usize| (low[k] - p[k]).max(p[k] - high[k]).max(0.0);
             gap(0) * gap(0) + gap(1) * gap(1) + gap(2) * gap(2)
         };
-        let found = self.tree.find_best(bound, box_distance, |face, best| self.candidate(face, point, tracked, best));
+        let found =
+            self.tree.find_best(bound, box_distance, |face, best| self.candidate(face, point, side, faces, best));
         let (face, (squared, spot)) = found.or(guess)?;
         let offset = point - spot.point;
         let distance = squared.sqrt();
@@ -77,7 +112,7 @@ impl<'a> PosedBody<'a> {
     }
 
     /// Squared distance to a face and where, if below `best` and not refused as too deep.
-    fn candidate(&self, face: u32, point: DVec3, tracked: Option<u32>, best: f64) -> Option<(f64, Spot)> {
+    fn candidate(&self, face: u32, point: DVec3, side: Option<DVec3>, faces: Faces, best: f64) -> Option<(f64, Spot)> {
         let corners = self.collider.faces[face as usize];
         let barycentric = closest_on_triangle(point, corners.map(|i| self.positions[i as usize]));
         let foot: DVec3 = (0..3).map(|k| self.positions[corners[k] as usize] * barycentric[k]).sum();
@@ -86,15 +121,17 @@ impl<'a> PosedBody<'a> {
             return None;
         }
         let normal = self.pseudo_normal(face, barycentric);
-        if (point - foot).dot(normal) < 0.0 {
-            if self.on_border(face, barycentric) {
-                return None;
-            }
-            let own = tracked.is_none_or(|old| self.face_normals[old as usize].dot(normal) > 0.0);
-            let limit = if own { DEPTH } else { DEPTH_OPPOSED };
-            if squared > limit * limit {
-                return None;
-            }
+        let own = side.is_none_or(|side| side.dot(normal) > 0.0);
+        let behind = (point - foot).dot(normal) < 0.0;
+        let refused = match faces {
+            Faces::All => false,
+            Faces::Own => !own,
+            // Behind a face turned all the way round is not a crease but the far side of a thin part.
+            Faces::Across(first) => !(if behind { -CREASE } else { -1.0 }..CREASE).contains(&first.dot(normal)),
+        };
+        let limit = if own { DEPTH } else { DEPTH_OPPOSED };
+        if refused || behind && (squared > limit * limit || self.on_border(face, barycentric)) {
+            return None;
         }
         Some((squared, Spot { point: foot, barycentric, normal }))
     }

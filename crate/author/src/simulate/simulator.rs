@@ -20,7 +20,7 @@ use crate::{Error, Result};
 pub struct Simulator {
     character: Character,
     rest: Vec<DVec3>,
-    cloth: Cloth,
+    pub(super) cloth: Cloth,
     layout: Layout,
     collider: Collider,
     adjacency: Vec<Vec<u32>>,

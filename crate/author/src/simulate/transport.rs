@@ -36,6 +36,7 @@ pub(super) fn transport(solver: &mut Solver, body: &PosedBody, motion: &[DAffine
     let n = solver.positions.len();
     let mut target = vec![DVec3::ZERO; n];
     let mut hold = vec![0.0; n];
+    let mut lag = vec![DVec3::ZERO; n];
     for i in 0..n {
         let x = solver.positions[i];
         let Some(hit) = body.closest(x, solver.tracked[i], RANGE) else { continue };
@@ -43,9 +44,8 @@ pub(super) fn transport(solver: &mut Solver, body: &PosedBody, motion: &[DAffine
         target[i] = rigid.transform_point3(x) - x;
         hold[i] = (-(hit.distance - 0.004).max(0.0) / DECAY).exp();
         solver.tracked[i] = Some(hit.face);
-        if solver.contacts[i].is_some() {
-            solver.anchors[i] = rigid.transform_point3(solver.anchors[i]);
-        }
+        // The anchor keeps its offset from the vertex: at most the slip length, and turning with the body.
+        lag[i] = rigid.transform_vector3(solver.anchors[i] - x);
     }
     let mut shift: Vec<DVec3> = target.iter().zip(&hold).map(|(t, h)| *t * *h).collect();
     for _ in 0..SWEEPS {
@@ -58,9 +58,7 @@ pub(super) fn transport(solver: &mut Solver, body: &PosedBody, motion: &[DAffine
     }
     for i in 0..n {
         solver.positions[i] += shift[i];
-        if solver.contacts[i].is_none() {
-            solver.anchors[i] = solver.positions[i];
-        }
+        solver.anchors[i] = solver.positions[i] + lag[i];
     }
     solver.moved();
 }

@@ -58,7 +58,7 @@ fn contact_friction_and_pin_gradients() {
         let tangent = normal.any_orthonormal_vector();
         let anchor = x[0] + tangent * slip + normal * 0.002;
         let plane = normal.dot(x[0]) - 0.001;
-        let contact = Contact { normal, plane, offset: 0.004, stiffness: 6.0, grip: 0.004, anchor };
+        let contact = Contact { vertex: 0, normal, plane, offset: 0.004, stiffness: 6.0, grip: 0.004, anchor };
         let (gradient, _) = contact.derivatives(x[0]);
         assert!(error(&x, 1e-8, |x| contact.energy(x[0]), &[gradient]) < 1e-5);
         let pin = Pin { vertex: 0, target: anchor, stiffness: 3.0 };
