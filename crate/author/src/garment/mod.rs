@@ -4,6 +4,7 @@
 mod anatomy;
 mod cut;
 mod field;
+mod hull;
 mod opening;
 mod quality;
 mod remesh;
@@ -20,6 +21,7 @@ use solid::Solid;
 #[cfg(test)]
 mod test;
 
+pub use hull::hull;
 pub use quality::{Quality, quality};
 
 /// How a garment is cut. Fractions run along a limb from where it leaves the trunk (0) to its tip (1).
@@ -54,8 +56,7 @@ pub fn shell(character: &Character, cut: &Cut) -> Result<Garment> {
     let low = character.body.positions.iter().fold(DVec3::INFINITY, |low, p| low.min(*p));
     let high = character.body.positions.iter().fold(DVec3::NEG_INFINITY, |high, p| high.max(*p));
     let extent = (high - low).max_element();
-    // 7 mm on a human, and at most six million voxels on a bulky body.
-    let cell = (extent / 250.0).max(((high - low).max(DVec3::splat(0.1 * extent)).element_product() / 6e6).cbrt());
+    let cell = cell(low, high);
     let looseness = cut.looseness.unwrap_or(extent / 150.0);
     if !(looseness >= cell && looseness <= 0.1 * extent) {
         let (least, most) = (cell, 0.1 * extent);
@@ -84,6 +85,12 @@ pub fn shell(character: &Character, cut: &Cut) -> Result<Garment> {
         return Err(Error::Garment(format!("wanted an open manifold sheet, found {found}")));
     }
     Ok(Garment { surface: unwrap::unwrap(&piece.mesh), mesh: piece.mesh })
+}
+
+/// Voxel edge for a body between two corners, metres: 7 mm on a human, and at most six million voxels on a bulky body.
+fn cell(low: DVec3, high: DVec3) -> f64 {
+    let extent = (high - low).max_element();
+    (extent / 250.0).max(((high - low).max(DVec3::splat(0.1 * extent)).element_product() / 6e6).cbrt())
 }
 
 /// Rejects what cannot be dressed.

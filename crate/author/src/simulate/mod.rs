@@ -6,6 +6,7 @@ mod cloth;
 mod collider;
 mod contact;
 mod distance;
+mod hull;
 mod material;
 mod matrix;
 mod membrane;

@@ -23,6 +23,11 @@ pub struct Settings {
     pub relax_iterations: usize,
     /// Residual at which a pose counts as converged: RMS force per vertex over the mean vertex weight.
     pub residual: f64,
+    /// Move over the last iterations under which a pose counts as settled although the residual is larger, metres RMS: forces at
+    /// stiff contacts flicker where the cloth no longer moves.
+    pub drift: f64,
+    /// Share of vertices that may be caught inside the body, where a skinned body cuts into itself.
+    pub caught: f64,
     /// Largest principal stretch a pose may have anywhere; above it the cloth is caught in the body.
     pub stretch_limit: f64,
     /// Cloth vertices sprung to the body, as a waistband or a collar is.
@@ -41,9 +46,11 @@ impl Default for Settings {
             path_steps: 24,
             path_iterations: 2,
             path_time_step: 0.05,
-            relax_iterations: 120,
+            relax_iterations: 90,
             residual: 1e-2,
-            stretch_limit: 1.5,
+            drift: 5e-4,
+            caught: 0.02,
+            stretch_limit: 2.5,
             attached: Vec::new(),
             attachment: 10.0,
         }
@@ -63,6 +70,8 @@ impl Settings {
             ("path_time_step", self.path_time_step, 1e-5, 1e3),
             ("relax_iterations", self.relax_iterations as f64, 1.0, 1e6),
             ("residual", self.residual, 1e-9, 1e3),
+            ("drift", self.drift, 0.0, 1.0),
+            ("caught", self.caught, 0.0, 1.0),
             ("stretch_limit", self.stretch_limit, 1.0, f64::MAX),
             ("attachment", self.attachment, 0.0, 1e6),
         ];

@@ -6,6 +6,7 @@ use glam::{DAffine3, DVec3};
 use super::cloth::Cloth;
 use super::collider::{Collider, blend};
 use super::contact::Pin;
+use super::hull::hull;
 use super::material::Material;
 use super::newton::{Layout, Probe, Solver};
 use super::outcome::{Outcome, Status, stretch};
@@ -35,7 +36,7 @@ impl Simulator {
         let rest = garment.mesh.positions.clone();
         settings.check(rest.len())?;
         let cloth = Cloth::new(&garment.mesh, &material, settings.shape)?;
-        let collider = Collider::new(character, &garment.mesh, settings.reach)?;
+        let collider = Collider::new(&hull(character, &garment.mesh)?, &garment.mesh, settings.reach)?;
         let layout = Layout::new(&cloth)?;
         let attached = attach(&collider, &rest, &settings.attached);
         let adjacency = adjacency(&cloth);
@@ -100,13 +101,16 @@ impl Simulator {
         if !relaxed.residual.is_finite() || solver.positions.iter().any(|p| !p.is_finite()) {
             return reject("wanted finite forces, found none".into());
         }
-        if relaxed.residual > self.settings.residual {
-            let wanted = self.settings.residual;
-            return reject(format!("residual: wanted below {wanted}, found {:.4}", relaxed.residual));
+        let Settings { residual, drift, caught, .. } = self.settings;
+        if relaxed.residual > residual && relaxed.drift > drift {
+            let (found, moved) = (relaxed.residual, 1e3 * relaxed.drift);
+            return reject(format!(
+                "residual: wanted below {residual}, found {found:.4}, still moving by {moved:.2} mm"
+            ));
         }
-        if relaxed.least_distance <= 0.0 {
-            let depth = -1e3 * relaxed.least_distance;
-            return reject(format!("wanted no vertex inside the body, found one {depth:.2} mm deep"));
+        if relaxed.inside as f64 > caught * solver.positions.len() as f64 {
+            let (found, depth) = (relaxed.inside, -1e3 * relaxed.least_distance);
+            return reject(format!("wanted no vertex inside the body, found {found}, {depth:.2} mm deep"));
         }
         let (_, largest) = stretch(&self.cloth, &solver.positions);
         if largest > self.settings.stretch_limit {

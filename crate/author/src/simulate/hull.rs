@@ -1,0 +1,63 @@
+//! The body the cloth touches: the outer skin of the character's body, skinned by the body under it.
+//! Against the body itself cloth was caught between the shells and joint balls of real characters, and on the sharp ridges of
+//! coarse ones: no pose of a 49,000-triangle figure of two nested meshes converged.
+
+use std::collections::BTreeMap;
+
+use super::collider::Collider;
+use super::posed::PosedBody;
+use crate::Result;
+use crate::garment;
+use crate::rig::{Character, Mesh, SkinWeights};
+
+/// What stays between the skin and the body, metres.
+const GAP: f64 = 0.0015;
+/// Rounds of averaging over the skin's neighbours, so that coarse bodies do not bend it in steps.
+const ROUNDS: usize = 4;
+/// Joints a vertex of the skin may follow.
+const JOINTS: usize = 6;
+
+/// The character with its outer skin for a body.
+pub(super) fn hull(character: &Character, garment: &Mesh) -> Result<Character> {
+    let (mut mesh, distance) = garment::hull(character)?;
+    let collider = Collider::new(character, garment, f64::MAX)?;
+    let body = PosedBody::new(&collider, collider.rest.clone());
+    let mut weights: Vec<SkinWeights> = Vec::with_capacity(mesh.positions.len());
+    for position in &mut mesh.positions {
+        let Some(hit) = body.closest(*position, None, 10.0 * distance) else {
+            weights.push(weights.last().cloned().unwrap_or_else(|| vec![(character.root, 1.0)]));
+            continue;
+        };
+        weights.push(collider.skin(hit.face, hit.barycentric));
+        *position -= hit.normal * (distance - GAP).min(hit.distance - GAP);
+    }
+    smooth(&mesh, &mut weights);
+    Ok(Character { body: mesh, weights, ..character.clone() })
+}
+
+/// Averages the weights over neighbours and keeps the strongest.
+fn smooth(mesh: &Mesh, weights: &mut Vec<SkinWeights>) {
+    let mut neighbours = vec![Vec::new(); mesh.positions.len()];
+    for triangle in &mesh.triangles {
+        for k in 0..3 {
+            neighbours[triangle[k] as usize].push(triangle[(k + 1) % 3] as usize);
+        }
+    }
+    for _ in 0..ROUNDS {
+        let mean = |(own, neighbours): (&SkinWeights, &Vec<usize>)| {
+            let mut sum = BTreeMap::new();
+            let share = 0.5 / neighbours.len().max(1) as f64;
+            let all = neighbours.iter().map(|j| (&weights[*j], share)).chain([(own, 0.5)]);
+            for (row, share) in all {
+                row.iter().for_each(|(joint, weight)| *sum.entry(*joint).or_insert(0.0) += share * weight);
+            }
+            let mut row: SkinWeights = sum.into_iter().collect();
+            row.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+            row.truncate(JOINTS);
+            let total: f64 = row.iter().map(|(_, weight)| weight).sum();
+            row.iter_mut().for_each(|(_, weight)| *weight /= total);
+            row
+        };
+        *weights = weights.iter().zip(&neighbours).map(mean).collect();
+    }
+}
