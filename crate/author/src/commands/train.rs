@@ -118,10 +118,10 @@ fn epochs_of(trainer: &mut Trainer, epochs: usize, checkpoint: &Path) -> Result<
         loss = trainer.epoch(|_, _, _| steps_done += 1)?;
         bar.set_position(trainer.epoch as u64);
         bar.set_message(format!("E_dist {:.2} mm, coarse {:.2} mm", loss.fine * 1e3, loss.coarse * 1e3));
-        if trainer.epoch % CHECKPOINT == 0 && trainer.epoch < epochs {
+        if trainer.epoch.is_multiple_of(CHECKPOINT) && trainer.epoch < epochs {
             trainer.save(checkpoint)?;
         }
-        if bar.is_hidden() && (trainer.epoch % CHECKPOINT == 0 || trainer.epoch == epochs) {
+        if bar.is_hidden() && (trainer.epoch.is_multiple_of(CHECKPOINT) || trainer.epoch == epochs) {
             println!(
                 "epoch {} of {epochs}: {:.2} mm, {:.0} s",
                 trainer.epoch,

@@ -121,7 +121,7 @@ pub fn write_garment(folder: &Folder, away: DVec3) {
 }
 
 /// Rewrites a GLB of the folder with its JSON and binary chunk changed.
-pub fn edit(path: &Path, change: impl FnOnce(&mut Value, &mut Vec<u8>)) {
+pub fn edit(path: &Path, change: impl FnOnce(&mut Value, &mut [u8])) {
     let bytes = std::fs::read(path).expect("a GLB");
     let glb = ::gltf::Glb::from_slice(&bytes).expect("a GLB");
     let mut json: Value = serde_json::from_slice(&glb.json).expect("JSON");
@@ -132,7 +132,7 @@ pub fn edit(path: &Path, change: impl FnOnce(&mut Value, &mut Vec<u8>)) {
 }
 
 /// Makes the first number of the file's positions NaN.
-pub fn spoil(json: &mut Value, bin: &mut Vec<u8>) {
+pub fn spoil(json: &mut Value, bin: &mut [u8]) {
     let accessor = json["meshes"][0]["primitives"][0]["attributes"]["POSITION"].as_u64().expect("an accessor");
     let view = json["accessors"][accessor as usize]["bufferView"].as_u64().expect("a view");
     let offset = json["bufferViews"][view as usize]["byteOffset"].as_u64().unwrap_or(0) as usize;
