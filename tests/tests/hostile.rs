@@ -175,6 +175,27 @@ fn every_shape_and_number_is_checked() {
     }
 }
 
+/// Sizes that agree with each other, and still are no network.
+#[test]
+fn layers_without_width_are_refused() {
+    let empty = |file: &mut Tensors, name: &str, shape: &[usize]| {
+        file.tensors.insert(name.to_owned(), Tensor::f32(shape, &[]));
+    };
+    let embedding = lie(|file| {
+        empty(file, "embedding.0.weight", &[0, 36]);
+        empty(file, "embedding.0.bias", &[0]);
+        empty(file, "embedding.1.weight", &[4, 0]);
+    });
+    assert_kind(embedding, "shape", "embedding.0.weight");
+    let graph = lie(|file| {
+        for part in ["query", "key", "value", "skip"] {
+            empty(file, &format!("graph.0.{part}.weight"), &[0, 3]);
+            empty(file, &format!("graph.0.{part}.bias"), &[0]);
+        }
+    });
+    assert_kind(graph, "shape", "graph.0.query.weight");
+}
+
 #[test]
 fn indices_out_of_range_are_refused() {
     for (name, shape) in [("cloth.triangles", &[36, 3][..]), ("reference.index", &[24])] {
