@@ -1,8 +1,9 @@
-//! Model files that are cut, flipped or lying, and poses that are none: each has its kind of error; none panics, none yields NaN.
+//! Model files that are cut, flipped or lying: each has its kind of error; none panics, none yields NaN.
 
 use ctsn_core::file::{Tensor, Tensors};
 use ctsn_core::model::HostModel;
-use ctsn_core::{Error, Predictor, Result, Streams};
+use ctsn_core::{Predictor, Result};
+use ctsn_tests::finite::{pose, predict};
 use ctsn_tests::golden;
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::{wasm_bindgen_test as test, wasm_bindgen_test_configure};
@@ -11,32 +12,8 @@ use wasm_bindgen_test::{wasm_bindgen_test as test, wasm_bindgen_test_configure};
 wasm_bindgen_test_configure!(run_in_browser);
 
 const TINY: &[u8] = golden::ALL[0].model;
-const STREAMS: [Streams; 3] = [Streams::Both, Streams::Skeleton, Streams::None];
 /// Rounds of bit flips.
 const FLIPS: usize = 4000;
-
-/// The first golden pose [J, 3, 4], repeated or cut to `joints`.
-fn pose(joints: usize) -> Vec<f32> {
-    let file = Tensors::parse(golden::ALL[0].expected).expect("golden file");
-    let all = file.tensors["pose.joints"].to_f32().expect("poses");
-    all[..36].iter().copied().cycle().take(12 * joints).collect()
-}
-
-/// Predicts with every stream: finite everywhere, or refused as not finite. Whether all of it was finite.
-fn predict(predictor: &mut Predictor, pose: &[f32]) -> bool {
-    let one = |streams| match predictor.predict_row_major(pose, streams) {
-        Ok(()) => {
-            let mut results = predictor.positions().iter().chain(predictor.normals());
-            assert!(results.all(|value| value.is_finite()), "{streams:?}: a prediction that is not finite");
-            true
-        }
-        Err(error) => {
-            assert_eq!(error.kind(), "not_finite", "{streams:?}: {error}");
-            false
-        }
-    };
-    STREAMS.map(one) == [true; 3]
-}
 
 /// Length of the header and offset of the payload.
 fn header(bytes: &[u8]) -> (usize, usize) {
@@ -260,40 +237,4 @@ fn descriptions_that_lie_are_refused() {
     assert_kind(lie(|file| file.metadata.clear()), "not_model", "ctsn");
     let other = lie(|file| drop(file.metadata.insert("ctsn".to_owned(), "a picture".to_owned())));
     assert_kind(other, "not_model", "lacks");
-}
-
-#[test]
-fn poses_that_are_none_are_refused() {
-    let mut predictor = Predictor::new(TINY).expect("golden model");
-    let whole = pose(3);
-    predictor.predict_row_major(&whole, Streams::Both).expect("a golden pose");
-    let before = predictor.positions().to_vec();
-    for length in [0, 12, 35, 37, 47, 49] {
-        let error = predictor.predict_row_major(&vec![0.0; length], Streams::Both).expect_err("wanted a refusal");
-        assert_eq!(error, Error::JointCount { wanted: 36, joints: 3, found: length });
-        let error = predictor.predict(&vec![0.0; length], Streams::Both).expect_err("wanted a refusal");
-        assert_eq!(error, Error::JointCount { wanted: 48, joints: 3, found: length });
-    }
-    for value in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
-        let mut pose = whole.clone();
-        pose[17] = value;
-        let error = predictor.predict_row_major(&pose, Streams::Both).expect_err("wanted a refusal").to_string();
-        assert!(error.contains("pose") && error.contains("element 17"), "{error}");
-    }
-    assert_eq!(predictor.positions(), before, "a refused pose leaves the last prediction");
-}
-
-#[test]
-fn extreme_poses_are_finite_or_refused() {
-    for golden in &golden::ALL[..2] {
-        let mut predictor = Predictor::new(golden.model).expect("golden model");
-        let joints = predictor.sizes().joints;
-        let plain = pose(joints);
-        let scaled = |factor: f32| plain.iter().map(|value| value * factor).collect::<Vec<f32>>();
-        for factor in [0.0, 1e-30, 1e-6, 1e6, -1e6] {
-            assert!(predict(&mut predictor, &scaled(factor)), "{}: a pose times {factor:e}", golden.name);
-        }
-        assert!(!predict(&mut predictor, &vec![f32::MAX; 12 * joints]), "what overflows is refused");
-        assert!(predict(&mut predictor, &plain), "and the model lives on");
-    }
 }
