@@ -1,3 +1,4 @@
 //! What the tests across packages share: golden files and the checks against them, the same natively and in the browser.
 
+pub mod finite;
 pub mod golden;

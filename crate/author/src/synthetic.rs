@@ -62,7 +62,7 @@ fn triangles(around: usize, along: usize) -> Vec<u32> {
     let at = |row: usize, i: usize| (row * around + i % around) as u32;
     let quad = |row: usize, i: usize| {
         let [a, b, c, d] = [at(row, i), at(row, i + 1), at(row + 1, i), at(row + 1, i + 1)];
-        if row % 2 == 0 { [a, c, b, b, c, d] } else { [a, c, d, a, d, b] }
+        if row.is_multiple_of(2) { [a, c, b, b, c, d] } else { [a, c, d, a, d, b] }
     };
     (0..along - 1).flat_map(|row| (0..around).flat_map(move |i| quad(row, i))).collect()
 }

@@ -44,10 +44,10 @@ pub enum Error {
         /// How many there are.
         limit: usize,
     },
-    /// A tensor or a pose holds NaN or infinity.
+    /// A tensor, a pose or a prediction holds NaN or infinity.
     #[error("{what}: value {found} at element {element} is not finite")]
     NotFinite {
-        /// Tensor name or "pose".
+        /// Tensor name, "pose" or "positions".
         what: String,
         /// Element.
         element: usize,

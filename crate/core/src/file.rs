@@ -97,17 +97,25 @@ impl Tensors {
         let header = std::str::from_utf8(header).map_err(|_| malformed("header is not UTF-8"))?;
         let header: Object = json::from_str(header).map_err(|_| malformed("header is not a JSON object"))?;
         let mut file = Tensors::default();
+        let mut ranges = Vec::new();
         for (name, entry) in &header {
             match entry {
                 Value::Object(strings) if name == "__metadata__" => file.metadata = metadata(strings)?,
                 Value::Object(entry) => {
-                    let tensor = tensor(name, entry, &rest[length..])?;
+                    let (tensor, range) = tensor(name, entry, &rest[length..])?;
                     file.tensors.insert(name.clone(), tensor);
+                    ranges.push((range, name));
                 }
                 _ => return Err(malformed(&format!("entry {name} is not an object"))),
             }
         }
-        Ok(file)
+        // Shared bytes would let a small file grow without bound in memory.
+        ranges.retain(|(range, _)| range[0] < range[1]);
+        ranges.sort_unstable();
+        match ranges.array_windows().find(|[first, second]| second.0[0] < first.0[1]) {
+            Some([first, second]) => Err(malformed(&format!("tensors {} and {} share bytes", first.1, second.1))),
+            None => Ok(file),
+        }
     }
 
     /// The file's bytes: header, then tensors in the order of their names.
@@ -184,7 +192,8 @@ fn metadata(strings: &Object) -> Result<BTreeMap<String, String>> {
     strings.iter().map(text).collect()
 }
 
-fn tensor(name: &str, entry: &Object, payload: &[u8]) -> Result<Tensor> {
+/// One entry of the header: the tensor and the range of its bytes.
+fn tensor(name: &str, entry: &Object, payload: &[u8]) -> Result<(Tensor, [usize; 2])> {
     let malformed = |reason: String| Error::NotSafetensors(format!("tensor {name}: {reason}"));
     let dtype = match entry.get("dtype") {
         Some(Value::String(text)) => Dtype::NAMES.iter().find(|known| known.0 == text).map(|known| known.1),
@@ -200,7 +209,7 @@ fn tensor(name: &str, entry: &Object, payload: &[u8]) -> Result<Tensor> {
     }
     let truncated = || Error::Truncated { tensor: name.to_owned(), wanted: offsets[1], found: payload.len() };
     let bytes = payload.get(offsets[0]..offsets[1]).ok_or_else(truncated)?.to_vec();
-    Ok(Tensor { dtype, shape, bytes })
+    Ok((Tensor { dtype, shape, bytes }, [offsets[0], offsets[1]]))
 }
 
 fn sizes(value: Option<&Value>) -> Option<Vec<usize>> {

@@ -1,11 +1,11 @@
 //! A model ready to predict on the CPU: load once, then one call per frame without any allocation.
 
-use crate::Result;
 use crate::cpu::{Cpu, Level};
 use crate::device::{Device, Space};
 use crate::model::{HostModel, Sizes, Surface};
 use crate::network::{Activations, Streams, forward};
 use crate::pose::{BodyFrame, Rig, Transform};
+use crate::{Error, Result};
 
 /// A model on the CPU device with every buffer it needs.
 pub struct Predictor {
@@ -68,23 +68,28 @@ impl Predictor {
     /// Joint world matrices [J, 16], column-major as in three.js, metres -> positions and normals.
     pub fn predict(&mut self, joints: &[f32], streams: Streams) -> Result<()> {
         self.model.rig.body_frame_column_major(joints, &mut self.frame)?;
-        self.run(streams);
-        Ok(())
+        self.run(streams)
     }
 
     /// Joint world transforms [J, 3, 4], row-major, metres -> positions and normals.
     pub fn predict_row_major(&mut self, joints: &[f32], streams: Streams) -> Result<()> {
         self.model.rig.body_frame(joints, &mut self.frame)?;
-        self.run(streams);
-        Ok(())
+        self.run(streams)
     }
 
-    fn run(&mut self, streams: Streams) {
+    /// Weights and poses may be finite and yet overflow together; what comes out is checked, so that NaN never leaves.
+    fn run(&mut self, streams: Streams) -> Result<()> {
         let a = &mut self.activations;
         self.device.write(&mut a.pose, &self.frame.vector);
         self.device.write(&mut a.body_frame, &self.frame.transforms);
         forward(&mut self.device, &self.model, streams, Space::World, a);
         self.device.normals(&a.positions, &self.model.triangles, &mut self.normals);
+        match a.positions.iter().position(|value| !value.is_finite()) {
+            Some(element) => {
+                Err(Error::NotFinite { what: "positions".to_owned(), element, found: a.positions[element] })
+            }
+            None => Ok(()),
+        }
     }
 
     /// Predicted positions [n, 3], world, metres.

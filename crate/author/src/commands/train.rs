@@ -33,7 +33,7 @@ pub struct Settings {
     batch: usize,
     /// Adam's learning rate at the start; it falls along a cosine
     #[arg(long, default_value_t = 1e-3)]
-    rate: f32,
+    learning_rate: f32,
     /// Seed of initial weights and order
     #[arg(long, default_value_t = 1)]
     seed: u64,
@@ -69,13 +69,13 @@ enum StorageArgument {
 const CHECKPOINT: usize = 5;
 
 pub fn run(arguments: &Arguments) -> Result<()> {
-    let Settings { epochs, batch, rate, seed, embedding, basis, layers, heads, features, storage } =
+    let Settings { epochs, batch, learning_rate, seed, embedding, basis, layers, heads, features, storage } =
         arguments.settings.clone();
     let dataset = Dataset::read(&arguments.dataset)?;
     let samples = dataset.split(Split::Train);
     let architecture = Architecture { embedding, basis, layers, heads, features };
     let model = train::initial(&dataset.setup, &samples, architecture, seed)?;
-    let settings = train::Settings { epochs, batch, rate, seed };
+    let settings = train::Settings { epochs, batch, rate: learning_rate, seed };
     let mut trainer = Trainer::new(model, &dataset.setup, &samples, settings)?;
     let checkpoint = arguments.output.with_extension("checkpoint");
     if checkpoint.exists() {
@@ -118,10 +118,10 @@ fn epochs_of(trainer: &mut Trainer, epochs: usize, checkpoint: &Path) -> Result<
         loss = trainer.epoch(|_, _, _| steps_done += 1)?;
         bar.set_position(trainer.epoch as u64);
         bar.set_message(format!("E_dist {:.2} mm, coarse {:.2} mm", loss.fine * 1e3, loss.coarse * 1e3));
-        if trainer.epoch % CHECKPOINT == 0 && trainer.epoch < epochs {
+        if trainer.epoch.is_multiple_of(CHECKPOINT) && trainer.epoch < epochs {
             trainer.save(checkpoint)?;
         }
-        if bar.is_hidden() && (trainer.epoch % CHECKPOINT == 0 || trainer.epoch == epochs) {
+        if bar.is_hidden() && (trainer.epoch.is_multiple_of(CHECKPOINT) || trainer.epoch == epochs) {
             println!(
                 "epoch {} of {epochs}: {:.2} mm, {:.0} s",
                 trainer.epoch,

@@ -1,6 +1,8 @@
 //! Proximal Newton: `min Φ(x + δ) + Σ m_i |δ_i|² / 2h²`, one factorisation per iteration, `h` growing as steps succeed,
 //! so that the end is pure statics. Contacts are planes within an iteration and found anew for the next one.
 
+mod descent;
+
 use glam::{DMat3, DVec3};
 
 use super::cloth::Cloth;
@@ -11,8 +13,6 @@ use super::posed::{Hit, PosedBody};
 use super::settings::Settings;
 use crate::Result;
 
-/// Longest move of a vertex in one iteration, metres.
-const LONGEST_MOVE: f64 = 0.03;
 /// A vertex further than this beyond the contact offset is not looked at, metres.
 const MARGIN: f64 = 0.015;
 /// Proximal time step at the start of a relaxation and at most, seconds; growth after a full Newton step.
@@ -22,8 +22,6 @@ const GROWTH: f64 = 1.6;
 /// Time step in seconds above which the Hessian is exact. Near rest that converges quadratically; before, the exact
 /// one is indefinite more often than not.
 const EXACT_ABOVE: f64 = 10.0;
-/// Steps with an old factor after each Newton step.
-const CORRECTIONS: usize = 2;
 /// Factor by which a contact that gave way too far is stiffened, and how often it may be.
 const STIFFENING: f64 = 3.0;
 const STIFFEST: f64 = 30.0;
@@ -308,77 +306,5 @@ impl<'a> Solver<'a> {
         self.contacts.iter().for_each(|contact| gradient[contact.vertex] += contact.derivatives(x[contact.vertex]).0);
         self.pins.iter().for_each(|pin| gradient[pin.vertex] += pin.derivatives(x[pin.vertex]).0);
         gradient
-    }
-
-    /// Solves for the Newton step and takes the share of it that lowers the energy.
-    fn descend(&mut self, h: f64) -> f64 {
-        if !self.matrix.factorise() {
-            if !self.exact {
-                return 0.0;
-            }
-            self.exact = false;
-            self.assemble(h);
-            if !self.matrix.factorise() {
-                return 0.0;
-            }
-        }
-        let step = self.matrix.step(&self.gradient);
-        let longest = step.iter().map(|d| d.length_squared()).fold(0.0, f64::max).sqrt();
-        let slope: f64 = step.iter().zip(&self.gradient).map(|(d, g)| d.dot(*g)).sum();
-        if !longest.is_finite() || !slope.is_finite() {
-            return 0.0;
-        }
-        let start = self.energy(&self.positions);
-        let mut share = (LONGEST_MOVE / longest.max(1e-30)).min(1.0);
-        for _ in 0..12 {
-            let mut trial: Vec<DVec3> = self.positions.iter().zip(&step).map(|(x, d)| *x + *d * share).collect();
-            let wanted = start + 1e-4 * share * slope + 1e-13 * start.abs();
-            let energy = self.correct(&mut trial, h);
-            if energy <= wanted {
-                self.accept(trial);
-                return share;
-            }
-            share *= 0.5;
-        }
-        0.0
-    }
-
-    /// `Σ m |x - x₀|² / 2h²`.
-    fn inertia(&self, x: &[DVec3], h: f64) -> f64 {
-        let square = |i: usize| self.cloth.masses[i] * x[i].distance_squared(self.positions[i]);
-        (0..x.len()).map(square).sum::<f64>() / (2.0 * h * h)
-    }
-
-    /// Improves `trial` by steps with the old factor while they lower the energy; the energy reached. They take back
-    /// the stretch, second order in the step, that a long step along a soft direction of nearly inextensible cloth
-    /// leaves behind. Without them the same rest took 2.8 times the iterations.
-    fn correct(&mut self, trial: &mut Vec<DVec3>, h: f64) -> f64 {
-        let mut energy = self.energy(trial) + self.inertia(trial, h);
-        for _ in 0..CORRECTIONS {
-            let mut gradient = self.gradient(trial);
-            for i in 0..trial.len() {
-                gradient[i] += (trial[i] - self.positions[i]) * (self.cloth.masses[i] / (h * h));
-            }
-            let step = self.matrix.step(&gradient);
-            let better: Vec<DVec3> = trial.iter().zip(&step).map(|(x, d)| *x + *d).collect();
-            let lower = self.energy(&better) + self.inertia(&better, h);
-            if lower.is_nan() || lower >= energy {
-                break;
-            }
-            (*trial, energy) = (better, lower);
-        }
-        energy
-    }
-
-    /// Moves to `trial`; anchors follow the vertices that slip or are free.
-    fn accept(&mut self, trial: Vec<DVec3>) {
-        for i in 0..trial.len() {
-            self.clearance[i] -= trial[i].distance(self.positions[i]);
-        }
-        self.anchors.copy_from_slice(&trial);
-        for contact in self.contacts.iter().filter(|contact| contact.grip > 0.0) {
-            self.anchors[contact.vertex] = contact.slipped_anchor(trial[contact.vertex]);
-        }
-        self.positions = trial;
     }
 }

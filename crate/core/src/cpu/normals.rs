@@ -1,6 +1,6 @@
 //! Area-weighted vertex normals: the sum of the cross products of the triangles around a vertex, made unit length.
 
-/// positions [n, 3], triangles [t, 3] -> normals [n, 3]; +Y where a vertex has no area around it.
+/// positions [n, 3], triangles [t, 3] -> normals [n, 3]; +Y where a vertex has no area around it, or more than f32 can hold.
 pub fn normals(positions: &[f32], triangles: &[u32], normals: &mut [f32]) {
     let (positions, normals) = (positions.as_chunks::<3>().0, normals.as_chunks_mut::<3>().0);
     normals.fill([0.0; 3]);
@@ -15,6 +15,7 @@ pub fn normals(positions: &[f32], triangles: &[u32], normals: &mut [f32]) {
     }
     for normal in normals {
         let length = normal.iter().map(|c| c * c).sum::<f32>().sqrt();
-        *normal = if length > f32::MIN_POSITIVE { normal.map(|c| c / length) } else { [0.0, 1.0, 0.0] };
+        *normal =
+            if length > f32::MIN_POSITIVE && length.is_finite() { normal.map(|c| c / length) } else { [0.0, 1.0, 0.0] };
     }
 }

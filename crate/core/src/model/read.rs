@@ -156,13 +156,23 @@ pub(super) fn transpose(values: &[f32], rows: usize, columns: usize) -> Vec<f32>
 
 fn linear(file: &Tensors, name: &str, inputs: Option<usize>, outputs: Option<usize>) -> Result<Linear<Vec<f32>>> {
     let (weight, shape) = file.f32(&format!("{name}.weight"), &[outputs, inputs])?;
+    if shape.contains(&0) {
+        let (tensor, found) = (format!("{name}.weight"), format!("{shape:?}"));
+        return Err(Error::Shape { tensor, wanted: "at least one row and column".to_owned(), found });
+    }
     let bias = file.f32(&format!("{name}.bias"), &[Some(shape[0])])?.0;
     Ok(Linear { weight: transpose(&weight, shape[0], shape[1]), bias, inputs: shape[1], outputs: shape[0] })
 }
 
+/// How many layers `{name}.0`, `{name}.1`, … there are; a layer is there if any part of it is.
+fn count(file: &Tensors, name: &str) -> usize {
+    let any = |i: &usize| file.tensors.keys().any(|key| key.starts_with(&format!("{name}.{i}.")));
+    (0..).take_while(any).count()
+}
+
 /// Layers `{name}.0`, `{name}.1`, … as many as there are; the last one has `outputs`.
 fn mlp(file: &Tensors, name: &str, inputs: usize, outputs: Option<usize>) -> Result<Vec<Linear<Vec<f32>>>> {
-    let count = (0..).take_while(|i| file.tensors.contains_key(&format!("{name}.{i}.weight"))).count();
+    let count = count(file, name);
     let (mut layers, mut inputs) = (Vec::new(), inputs);
     for i in 0..count.max(1) {
         let last = if i + 1 == count { outputs } else { None };
@@ -174,9 +184,8 @@ fn mlp(file: &Tensors, name: &str, inputs: usize, outputs: Option<usize>) -> Res
 }
 
 fn graph(file: &Tensors) -> Result<Vec<Layer<Vec<f32>>>> {
-    let count = (0..).take_while(|l| file.tensors.contains_key(&format!("graph.{l}.query.weight"))).count();
     let (mut layers, mut inputs) = (Vec::new(), 3);
-    for l in 0..count {
+    for l in 0..count(file, "graph") {
         let layer = layer(file, l, inputs)?;
         inputs = layer.project.outputs / 4;
         layers.push(layer);

@@ -1,0 +1,180 @@
+//! The binary `ctsn` on good and bad input: what is refused ends with exit code 1 and a message that names the thing, never a panic.
+
+mod made;
+
+use ctsn_core::file::{Tensor, Tensors};
+use glam::DVec3;
+use made::{Folder, edit, spoil, write_character, write_garment};
+use serde_json::Value;
+
+const TINY: &[u8] = include_bytes!("../../../tests/golden/tiny.safetensors");
+const EXPECTED: &[u8] = include_bytes!("../../../tests/golden/tiny.golden.safetensors");
+
+fn poses_file(shape: &[usize], values: &[f32]) -> Vec<u8> {
+    let mut file = Tensors::default();
+    file.tensors.insert("pose.joints".to_owned(), Tensor::f32(shape, values));
+    file.to_bytes()
+}
+
+#[test]
+fn inspect_and_predict_agree_with_the_golden_file() {
+    let folder = Folder::new();
+    let golden = Tensors::parse(EXPECTED).expect("golden file");
+    folder.write("tiny.safetensors", TINY).write("poses.safetensors", EXPECTED);
+    let shown = folder.accepts("inspect tiny.safetensors");
+    for part in ["24 vertices, 36 triangles", "hip, leg0, leg1", "m = 4", "2 heads × 4", "k = 8", "skeleton.basis"] {
+        assert!(shown.contains(part), "wanted {part:?} in {shown}");
+    }
+    folder.accepts("predict tiny.safetensors poses.safetensors -o out.safetensors");
+    let out = Tensors::parse(&std::fs::read(folder.path("out.safetensors")).expect("a prediction")).expect("tensors");
+    let shape = [Some(4), Some(24), Some(3)];
+    let found = out.f32("positions", &shape).expect("positions").0;
+    out.f32("normals", &shape).expect("normals");
+    let wanted = golden.f32("expected.positions", &shape).expect("golden positions").0;
+    let tolerances: Value = serde_json::from_str(&golden.metadata["tolerance"]).expect("tolerances");
+    let tolerance = tolerances["positions"].as_f64().expect("a tolerance") as f32;
+    for (element, (found, wanted)) in found.iter().zip(&wanted).enumerate() {
+        assert!((found - wanted).abs() <= tolerance, "element {element}: wanted {wanted}, found {found}");
+    }
+}
+
+#[test]
+fn models_that_are_none_are_refused() {
+    let folder = Folder::new();
+    let mut lying = Tensors::parse(TINY).expect("golden model");
+    lying.tensors.get_mut("cloth.rest").expect("a tensor").shape = vec![36, 2];
+    folder
+        .write("picture.safetensors", b"a picture of a fox")
+        .write("cut.safetensors", &TINY[..TINY.len() / 2])
+        .write("lying.safetensors", &lying.to_bytes())
+        .write("poses.safetensors", EXPECTED);
+    for (file, says) in [
+        ("picture", &["not a safetensors file", "18"][..]),
+        ("cut", &["truncated file", "ends at byte"]),
+        ("lying", &["tensor cloth.rest", "wanted shape [*, 3]", "found [36, 2]"]),
+        ("poses", &["not a ctsn model", "__metadata__ has no key ctsn"]),
+        ("none", &["No such file"]),
+    ] {
+        let name = format!("{file}.safetensors");
+        let says = [says, &[&name]].concat();
+        folder.refuses(&format!("inspect {file}.safetensors"), &says);
+        folder.refuses(&format!("predict {file}.safetensors poses.safetensors -o out.safetensors"), &says);
+    }
+}
+
+#[test]
+fn poses_that_are_none_are_refused() {
+    let folder = Folder::new();
+    let mut values = vec![0.5; 36];
+    folder
+        .write("tiny.safetensors", TINY)
+        .write("four.safetensors", &poses_file(&[1, 4, 3, 4], &[0.0; 48]))
+        .write("square.safetensors", &poses_file(&[1, 3, 4, 4], &[0.0; 48]));
+    values[7] = f32::NAN;
+    folder.write("nan.safetensors", &poses_file(&[1, 3, 3, 4], &values));
+    folder.write("empty.safetensors", &Tensors::default().to_bytes());
+    for (file, says) in [
+        ("four", &["pose.joints", "wanted shape [*, 3, 3, 4]", "found [1, 4, 3, 4]"][..]),
+        ("square", &["pose.joints", "wanted shape [*, 3, 3, 4]", "found [1, 3, 4, 4]"]),
+        ("nan", &["pose.joints", "NaN at element 7"]),
+        ("empty", &["tensor pose.joints is missing"]),
+        ("none", &["No such file"]),
+    ] {
+        let name = format!("{file}.safetensors");
+        let says = [says, &[&name]].concat();
+        folder.refuses(&format!("predict tiny.safetensors {file}.safetensors -o out.safetensors"), &says);
+    }
+}
+
+#[test]
+fn characters_that_are_none_are_refused() {
+    let folder = Folder::new();
+    write_garment(&folder, DVec3::ZERO);
+    let refuses = |says: &[&str]| {
+        let says = [says, &["character.glb"]].concat();
+        folder.refuses("simulate character.glb garment.glb -o data", &says);
+        folder.refuses("bake character.glb garment.glb -o out.safetensors", &says);
+        assert!(!folder.path("data").exists(), "a dataset of nothing");
+    };
+    refuses(&["No such file"]);
+    folder.write("character.glb", b"a picture of a fox");
+    refuses(&["not a glTF"]);
+    folder.refuses("garment character.glb -o made.glb", &["character.glb", "not a glTF"]);
+    write_character(&folder, |character| character.clips.clear());
+    refuses(&["no clip", "wanted at least one"]);
+    write_character(&folder, |_| ());
+    edit(&folder.path("character.glb"), spoil);
+    refuses(&["NaN"]);
+    write_character(&folder, |_| ());
+    edit(&folder.path("character.glb"), |json, _| {
+        json.as_object_mut().expect("JSON").remove("skins");
+        for node in json["nodes"].as_array_mut().expect("nodes") {
+            node.as_object_mut().expect("a node").remove("skin");
+        }
+    });
+    refuses(&["no skin"]);
+}
+
+#[test]
+fn garments_that_are_none_are_refused() {
+    let folder = Folder::new();
+    write_character(&folder, |_| ());
+    let refuses = |says: &[&str]| folder.refuses("simulate character.glb garment.glb -o data", says);
+    refuses(&["garment.glb", "No such file"]);
+    folder.write("garment.glb", b"a picture of a shirt");
+    refuses(&["garment.glb", "not a glTF"]);
+    write_garment(&folder, DVec3::ZERO);
+    edit(&folder.path("garment.glb"), spoil);
+    refuses(&["garment.glb", "NaN"]);
+    write_garment(&folder, DVec3::ZERO);
+    edit(&folder.path("garment.glb"), |json, _| {
+        for node in json["nodes"].as_array_mut().expect("nodes") {
+            node.as_object_mut().expect("a node").remove("mesh");
+        }
+    });
+    refuses(&["garment.glb", "no garment", "triangle"]);
+    for away in [DVec3::X * 5.0, DVec3::Y * 100.0] {
+        write_garment(&folder, away);
+        refuses(&["garment", "body"]);
+    }
+}
+
+#[test]
+fn names_that_are_unknown_are_refused() {
+    let folder = Folder::new();
+    write_character(&folder, |_| ());
+    write_garment(&folder, DVec3::ZERO);
+    folder.write("tiny.safetensors", TINY);
+    folder.refuses("character nobody -o made.glb", &["nobody", "mannequin"]);
+    folder.refuses("simulate character.glb garment.glb -o data --clip swim", &["no clip swim", "turn"]);
+    folder.refuses("simulate character.glb garment.glb -o data --rate 0", &["--rate", "found 0"]);
+    let render = "render tiny.safetensors character.glb -o made.png";
+    folder.refuses(&format!("{render} --clip swim --frame 0"), &["swim", "turn"]);
+    folder.refuses(&format!("{render} --clip turn --frame 99"), &["no frame 99", "3"]);
+    folder.refuses(&format!("{render} --clip turn --frame 0"), &["joint hip"]);
+    assert!(!folder.path("made.glb").exists() && !folder.path("made.png").exists());
+}
+
+#[test]
+fn datasets_that_are_none_are_refused() {
+    let folder = Folder::new();
+    std::fs::create_dir(folder.path("data")).expect("a folder");
+    folder.write("tiny.safetensors", TINY);
+    for data in ["data", "missing"] {
+        let says = [data, "setup.safetensors", "ctsn simulate"];
+        folder.refuses(&format!("train {data} -o out.safetensors"), &says);
+        folder.refuses(&format!("evaluate tiny.safetensors {data}"), &says);
+    }
+    folder.write("data/setup.safetensors", TINY);
+    folder.refuses("train data -o out.safetensors", &["setup.safetensors", "no key setup"]);
+}
+
+#[test]
+fn arguments_that_are_none_are_refused() {
+    let folder = Folder::new();
+    for arguments in ["", "dance", "predict", "inspect one two"] {
+        let output = folder.run(arguments);
+        assert_eq!(output.status.code(), Some(2), "ctsn {arguments}");
+        assert!(String::from_utf8_lossy(&output.stderr).contains("Usage"), "ctsn {arguments}");
+    }
+}

@@ -1,0 +1,88 @@
+//! Nothing allocates per frame: after the first prediction the allocator is not called again. Native only; one test, so that
+//! no other thread of this binary allocates for its own reasons.
+#![cfg(not(target_arch = "wasm32"))]
+
+use ctsn_core::cpu::Level;
+use ctsn_core::file::Tensors;
+use ctsn_core::model::HostModel;
+use ctsn_core::{Predictor, Streams};
+use ctsn_tests::golden;
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+
+thread_local! {
+    /// Calls for memory by this thread.
+    static CALLS: Cell<usize> = const { Cell::new(0) };
+}
+
+/// The system's allocator, counted.
+struct Counting;
+
+fn count() {
+    CALLS.with(|calls| calls.set(calls.get() + 1));
+}
+
+// SAFETY: every call goes to the system's allocator unchanged; counting touches a cell that needs no memory.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        count();
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
+        count();
+        unsafe { System.alloc_zeroed(layout) }
+    }
+
+    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        count();
+        unsafe { System.realloc(pointer, layout, size) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        unsafe { System.dealloc(pointer, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// Calls for memory during `work`.
+fn calls(work: impl FnOnce()) -> usize {
+    let before = CALLS.get();
+    work();
+    CALLS.get() - before
+}
+
+/// [J, 3, 4] row-major -> [J, 16] column-major.
+fn column_major(pose: &[f32]) -> Vec<f32> {
+    let column =
+        |transform: &[f32], e: usize| if e % 4 == 3 { [0.0, 1.0][e / 15] } else { transform[e % 4 * 4 + e / 4] };
+    pose.chunks_exact(12).flat_map(|transform| (0..16).map(move |e| column(transform, e))).collect()
+}
+
+#[test]
+fn prediction_allocates_once() {
+    let small = &golden::ALL[1];
+    assert_eq!(small.name, "small");
+    let file = Tensors::parse(small.expected).expect("golden file");
+    let poses = file.tensors["pose.joints"].to_f32().expect("poses");
+    for level in [Level::fallback(), Level::baseline(), Level::new()] {
+        let mut made = None;
+        let model = HostModel::parse(small.model).expect("golden model");
+        assert!(calls(|| made = Some(Predictor::from_model(model, level))) > 10, "the counter counts");
+        let mut predictor = made.expect("a predictor");
+        let size = 12 * predictor.sizes().joints;
+        let columns: Vec<Vec<f32>> = poses.chunks_exact(size).map(column_major).collect();
+        predictor.predict(&columns[0], Streams::Both).expect("a golden pose");
+        for streams in [Streams::Both, Streams::Skeleton, Streams::None] {
+            let found = calls(|| {
+                for (rows, columns) in poses.chunks_exact(size).zip(&columns) {
+                    predictor.predict(columns, streams).expect("a golden pose");
+                    predictor.predict_row_major(rows, streams).expect("a golden pose");
+                }
+            });
+            assert_eq!(found, 0, "{level:?} {streams:?}: calls for memory in {} frames", 2 * columns.len());
+        }
+    }
+}

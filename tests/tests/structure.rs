@@ -1,0 +1,230 @@
+//! The rules of ARCHITECTURE.md that a search of the tree can check. Native only: it reads the sources.
+#![cfg(not(target_arch = "wasm32"))]
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// Longest file and longest function, lines.
+const FILE: usize = 300;
+const FUNCTION: usize = 60;
+
+/// A text file of the repository.
+struct Source {
+    /// Path from the root, with forward slashes.
+    path: String,
+    text: String,
+}
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+/// What a program says, run in the root.
+fn say(program: &str, arguments: &[&str]) -> String {
+    let output = Command::new(program).args(arguments).current_dir(root()).output();
+    let output = output.unwrap_or_else(|error| panic!("{program}: {error}"));
+    assert!(output.status.success(), "{program}: {}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).expect("UTF-8")
+}
+
+/// Every text file that git keeps or would keep.
+fn tree() -> Vec<Source> {
+    let list = say("git", &["ls-files", "--cached", "--others", "--exclude-standard"]);
+    let read = |path: &str| {
+        let text = std::fs::read(root().join(path)).ok().and_then(|bytes| String::from_utf8(bytes).ok())?;
+        Some(Source { path: path.to_owned(), text })
+    };
+    let tree: Vec<Source> = list.lines().filter_map(read).collect();
+    assert!(tree.iter().any(|source| source.path == "crate/core/src/lib.rs"), "git found no sources");
+    tree
+}
+
+impl Source {
+    fn is_rust(&self) -> bool {
+        self.path.ends_with(".rs")
+    }
+
+    fn is_typescript(&self) -> bool {
+        self.path.ends_with(".ts")
+    }
+
+    /// Shipped code: of the crates, the package and the site, without their tests.
+    fn is_product(&self) -> bool {
+        let folders = ["crate/", "web/src/", "www/src/"];
+        let test = ["/tests/", "/tests.rs", "/test.rs"].iter().any(|part| self.path.contains(part));
+        (self.is_rust() || self.is_typescript()) && folders.iter().any(|folder| self.path.starts_with(folder)) && !test
+    }
+
+    /// Asserts that none of `words` is in the text.
+    fn lacks(&self, words: &[&str], why: &str) {
+        for word in words {
+            if let Some(line) = self.text.lines().position(|line| line.contains(word)) {
+                panic!("{}:{}: {word} — {why}", self.path, line + 1);
+            }
+        }
+    }
+}
+
+#[test]
+fn the_model_alone_knows_tensor_names() {
+    let tree = tree();
+    let text: String = tree
+        .iter()
+        .filter(|source| source.path.starts_with("crate/core/src/model/"))
+        .map(|source| source.text.as_str())
+        .collect();
+    // Quoted words with one dot, as "cloth.rest"; the names of layers are put together from their first part.
+    let quoted = text.split('"').filter(|word| {
+        let mut parts = word.split('.');
+        let name = |part: Option<&str>| {
+            part.is_some_and(|part| part.len() > 1 && part.bytes().all(|b| b.is_ascii_lowercase()))
+        };
+        name(parts.next()) && name(parts.next()) && parts.next().is_none()
+    });
+    let mut names: Vec<String> = quoted.map(|name| format!("\"{name}\"")).collect();
+    names.extend(["embedding", "graph", "vertex"].map(|part| format!("\"{part}.")));
+    for known in ["\"cloth.rest\"", "\"skeleton.basis\"", "\"pose.std\"", "\"reference.index\"", "\"draw.uv\""] {
+        assert!(names.iter().any(|name| name == known), "{known} is no longer found in model/");
+    }
+    // A dataset's setup is a file of its own, whose names are its own, though cloth and drawing are called alike.
+    let shared = ["\"cloth.rest\"", "\"cloth.triangles\"", "\"draw.vertex\"", "\"draw.uv\"", "\"draw.triangles\""];
+    let elsewhere = |source: &&Source| source.is_product() && !source.path.starts_with("crate/core/src/model/");
+    for source in tree.iter().filter(elsewhere) {
+        let known: &[&str] = if source.path == "crate/author/src/dataset.rs" { &shared } else { &[] };
+        let words: Vec<&str> = names.iter().map(String::as_str).filter(|name| !known.contains(name)).collect();
+        source.lacks(&words, "only crate/core/src/model knows tensor names");
+    }
+}
+
+#[test]
+fn one_file_knows_safetensors() {
+    let knows = |source: &&Source| source.is_product() && source.text.contains(concat!("data_", "offsets"));
+    let tree = tree();
+    let found: Vec<&str> = tree.iter().filter(knows).map(|source| source.path.as_str()).collect();
+    assert_eq!(found, ["crate/core/src/file.rs"]);
+}
+
+#[test]
+fn every_operation_has_its_twins() {
+    let tree = tree();
+    let has = |path: &str| tree.iter().any(|source| source.path == path);
+    let device = tree.iter().find(|source| source.path == "crate/core/src/device.rs").expect("device.rs");
+    let (_, body) = device.text.split_once("pub trait Device {").expect("trait Device");
+    let functions = body.lines().filter_map(|line| line.strip_prefix("    fn ")?.split('(').next());
+    // Storage is no operation. What follows the network, and what feeds it from the pose alone, needs no gradient.
+    let operations: Vec<&str> = functions.filter(|name| !["buffer", "indices", "write"].contains(name)).collect();
+    for known in ["linear", "blend", "add", "skin", "attend", "gate"] {
+        assert!(operations.contains(&known), "trait Device has no {known}");
+    }
+    for operation in &operations {
+        assert!(has(&format!("crate/core/src/cpu/{operation}.rs")), "{operation} has no file in crate/core/src/cpu");
+        let gradient = has(&format!("crate/author/src/train/gradient/{operation}.rs"));
+        let wanted = !["features", "normals"].contains(operation);
+        assert_eq!(gradient, wanted, "{operation}: a file in crate/author/src/train/gradient");
+    }
+}
+
+#[test]
+fn files_are_short() {
+    let tree = tree();
+    let code = tree.iter().filter(|source| source.is_rust() || source.is_typescript() || source.path.ends_with(".mjs"));
+    let long = code.filter(|source| source.text.lines().count() > FILE);
+    // An exception says so in its first line: "Longer than 300 lines: …".
+    let bare =
+        long.filter(|source| !source.text.lines().next().is_some_and(|line| line.contains("Longer than 300 lines:")));
+    let found: Vec<String> = bare.map(|source| format!("{}: {}", source.path, source.text.lines().count())).collect();
+    assert!(found.is_empty(), "longer than {FILE} lines, without saying why: {found:#?}");
+}
+
+/// Name and length of every function, in lines. Counts on the formatter: a body ends where its closing brace stands alone,
+/// as far in as the function began.
+fn functions(text: &str) -> Vec<(&str, usize)> {
+    let lines: Vec<&str> = text.lines().collect();
+    let begins = |line: &str| {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let at = words.iter().position(|word| ["fn", "function"].contains(word));
+        let before = ["pub", "pub(super)", "pub(crate)", "const", "async", "unsafe", "export", "default"];
+        at.is_some_and(|at| words[..at].iter().all(|word| before.contains(word)))
+    };
+    let length = |start: usize| {
+        let indent = lines[start].len() - lines[start].trim_start().len();
+        let opens = (start..lines.len()).find(|i| lines[*i].ends_with(['{', ';', '}'])).expect("an end");
+        if !lines[opens].ends_with('{') {
+            return opens + 1 - start;
+        }
+        let closes = |i: &usize| {
+            lines[*i].len() - lines[*i].trim_start().len() == indent
+                && lines[*i].trim_end() == format!("{:indent$}}}", "")
+        };
+        (opens + 1..lines.len()).find(closes).expect("a closing brace") + 1 - start
+    };
+    (0..lines.len()).filter(|i| begins(lines[*i])).map(|i| (lines[i].trim(), length(i))).collect()
+}
+
+#[test]
+fn functions_are_short() {
+    let tree = tree();
+    let (mut count, mut long) = (0, Vec::new());
+    for source in tree.iter().filter(|source| source.is_rust() || source.is_typescript()) {
+        for (name, length) in functions(&source.text) {
+            count += 1;
+            if length > FUNCTION {
+                long.push(format!("{}: {name}: {length}", source.path));
+            }
+        }
+    }
+    assert!(count > 500, "only {count} functions found");
+    assert!(long.is_empty(), "longer than {FUNCTION} lines: {long:#?}");
+    assert_eq!(functions("fn f(\n    a: u8,\n) {\n    if a {\n    }\n}\nfn g();\n"), [("fn f(", 6), ("fn g();", 1)]);
+}
+
+#[test]
+fn platforms_keep_to_their_crates() {
+    let (bindgen, system) =
+        (["wasm_bindgen", "wasm-bindgen", "js_sys"], ["std::fs", "std::net", "std::env", "std::thread"]);
+    let intrinsics = [concat!("std::", "arch"), concat!("core::", "arch"), concat!("_mm", "_"), concat!("_mm", "256_")];
+    let (mut wasm, mut core) = (0, 0);
+    for source in &tree() {
+        if source.path.starts_with("crate/wasm/") {
+            wasm += usize::from(source.text.contains(bindgen[0]));
+        } else if source.path.starts_with("crate/") {
+            source.lacks(&bindgen, "only crate/wasm speaks to the browser");
+        }
+        if source.path.starts_with("crate/core/src/") {
+            core += 1;
+            source.lacks(&system, "the core does no I/O");
+        }
+        if source.is_rust() {
+            source.lacks(&intrinsics, "SIMD is written once, over a portable crate");
+        }
+    }
+    assert!(wasm > 0 && core > 10, "{wasm} files of crate/wasm, {core} of crate/core");
+}
+
+#[test]
+fn one_file_imports_the_glue() {
+    let tree = tree();
+    let imports = |source: &&Source| {
+        source.is_typescript()
+            && source.text.lines().any(|line| line.contains("import") && line.contains("/glue/ctsn.js"))
+    };
+    let found: Vec<&str> = tree.iter().filter(imports).map(|source| source.path.as_str()).collect();
+    assert_eq!(found, ["web/src/raw.ts"]);
+}
+
+#[test]
+fn the_module_holds_no_authoring() {
+    let arguments = ["tree", "--locked", "--package", "ctsn-wasm", "--edges", "normal", "--prefix", "none"];
+    let list = say(env!("CARGO"), &[&arguments[..], &["--target", "wasm32-unknown-unknown"]].concat());
+    let packages: Vec<&str> = list.lines().filter_map(|line| line.split(' ').next()).collect();
+    assert!(packages.contains(&"ctsn-core") && packages.contains(&"wasm-bindgen"), "{packages:?}");
+    for package in ["ctsn-author", "ctsn-tests", "gltf", "faer", "clap", "rayon", "image", "serde_json"] {
+        assert!(!packages.contains(&package), "ctsn-wasm depends on {package}");
+    }
+}
+
+#[test]
+fn no_file_names_a_machine() {
+    let places = [concat!("/wo", "rk/"), concat!("/ro", "ot/"), concat!("/ho", "me/"), concat!("/Us", "ers/")];
+    tree().iter().for_each(|source| source.lacks(&places, "a path of one machine"));
+}
