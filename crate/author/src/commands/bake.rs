@@ -17,18 +17,20 @@ pub struct Arguments {
     /// Model file to write (safetensors)
     #[arg(short, long)]
     output: PathBuf,
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = "Garment, where none is given")]
+    cut: garment::CutArguments,
+    #[command(flatten, next_help_heading = "Motion")]
     motion: simulate::Motion,
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = "Training")]
     settings: train::Settings,
 }
 
 pub fn run(arguments: &Arguments) -> Result<()> {
-    let Arguments { character, garment, output, motion, settings } = arguments;
+    let Arguments { character, garment, output, cut, motion, settings } = arguments;
     let dataset = output.with_extension("work");
     let garment = match garment {
         Some(garment) => garment.clone(),
-        None => generated(character, &dataset)?,
+        None => generated(character, &cut.cut(), &dataset)?,
     };
     simulate::run(&simulate::Arguments {
         character: character.clone(),
@@ -41,11 +43,11 @@ pub fn run(arguments: &Arguments) -> Result<()> {
 }
 
 /// The garment `ctsn garment` makes, kept beside the dataset and made once.
-fn generated(character: &Path, dataset: &Path) -> Result<PathBuf> {
+fn generated(character: &Path, cut: &Cut, dataset: &Path) -> Result<PathBuf> {
     let path = dataset.join("garment.glb");
     if !path.exists() {
         std::fs::create_dir_all(dataset).with_context(|| dataset.display().to_string())?;
-        garment::make(character, &Cut::default(), &path)?;
+        garment::make(character, cut, &path)?;
     }
     Ok(path)
 }

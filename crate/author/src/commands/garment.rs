@@ -22,7 +22,7 @@ pub struct Arguments {
 
 /// How the garment is cut.
 #[derive(clap::Args, Clone)]
-struct CutArguments {
+pub struct CutArguments {
     /// Distance from the body, metres. Default: 12 mm on a human
     #[arg(long)]
     looseness: Option<f64>,
@@ -45,7 +45,7 @@ struct CutArguments {
 
 impl CutArguments {
     /// The cut these arguments describe.
-    fn cut(&self) -> Cut {
+    pub fn cut(&self) -> Cut {
         let Self { looseness, vertices, ref joints, sleeve, hem, collar } = *self;
         let joints = Some(joints.clone()).filter(|joints| !joints.is_empty());
         Cut { looseness, vertices, joints, sleeve, hem, collar }

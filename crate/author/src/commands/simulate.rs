@@ -72,7 +72,8 @@ pub fn run_on(character: &Character, garment: &Garment, names: &[String; 2], fol
         ground_truth::simulate(character, garment, [&names[0], &names[1]], folder, |record| {
             bar.inc(1);
             if let Some(reason) = &record.rejected {
-                bar.println(format!("  left out: clip {} frame {}: {reason}", record.clip, record.frame));
+                // `println` of a bar that is not drawn, in a log file say, prints nothing.
+                bar.suspend(|| eprintln!("  left out: clip {} frame {}: {reason}", record.clip, record.frame));
             }
             if let Ok(mut seconds) = seconds.lock() {
                 seconds.push(record.seconds);
