@@ -2,7 +2,7 @@
 //! those already there skipped. The result does not depend on order or threads.
 
 use crate::dataset::{Description, Record, Sample, Setup, pose_path};
-use crate::rig::{Character, Garment, Pose};
+use crate::rig::{Character, Garment, Pose, SkinWeights};
 use crate::simulate::{Material, Settings, Simulator, Status};
 use crate::{Error, Result};
 use ctsn_core::model::Surface;
@@ -76,12 +76,16 @@ fn setup(character: &Character, garment: &Garment, names: [&str; 2], material: &
         surface: if garment.surface.uv.is_empty() { Surface::default() } else { surface },
         body: numbers(&character.body.positions),
         body_triangles: character.body.triangles.as_flattened().to_vec(),
-        body_weights: character
-            .weights
-            .iter()
-            .map(|row| row.iter().map(|(joint, weight)| (*joint, f64::from(*weight as f32))).collect())
-            .collect(),
+        body_weights: character.weights.iter().map(stored).collect(),
     }
+}
+
+/// A row of skin weights as a dataset gives it back: in f32, by joint. Without this a dataset would never look like its source.
+fn stored(row: &SkinWeights) -> SkinWeights {
+    let mut row: SkinWeights = row.iter().map(|(joint, weight)| (*joint, f64::from(*weight as f32))).collect();
+    row.retain(|(_, weight)| *weight != 0.0);
+    row.sort_by_key(|(joint, _)| *joint);
+    row
 }
 
 /// Simulates every frame of `character`'s clips into `folder`. `progress(record)` follows every pose, those found done included.
@@ -168,4 +172,58 @@ fn one(
     let sample = Sample { record, joints: joints(pose), truth: numbers(&outcome.positions) };
     sample.write(folder)?;
     Ok(sample)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rig::{Clip, Joint, Mesh, Surface as Drawn};
+
+    /// A square body with weights written strongest first, and a square of cloth over it.
+    fn scene() -> (Character, Garment) {
+        let corners = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::ONE];
+        let mesh = |lift: f64| Mesh {
+            positions: corners.map(|corner| corner * 0.37 + DVec3::Z * lift).to_vec(),
+            triangles: vec![[0, 1, 2], [1, 3, 2]],
+        };
+        let joint = |name: &str, height: f64| Joint {
+            name: name.to_owned(),
+            parent: None,
+            inverse_bind: DAffine3::from_rotation_translation(glam::DQuat::from_rotation_x(0.3), DVec3::Y * height),
+        };
+        let mut character = Character {
+            joints: vec![joint("Hips", 0.1), joint("Spine", 0.7)],
+            root: 0,
+            body: mesh(0.0),
+            weights: vec![vec![(1, 0.7), (0, 0.3)]; 4],
+            surface: Drawn::default(),
+            clips: Vec::new(),
+            metres_per_unit: 1.0,
+        };
+        let poses = vec![character.canonical_pose(); 2];
+        character.clips.push(Clip { name: "still".to_owned(), rate: 7.3, poses });
+        (character, Garment { mesh: mesh(0.01), surface: Drawn::default() })
+    }
+
+    #[test]
+    fn a_dataset_knows_what_it_was_made_from() {
+        let (character, garment) = scene();
+        let folder = tempfile::tempdir().unwrap();
+        let made = |garment: &Garment| setup(&character, garment, ["a.glb", "b.glb"], &Material::default());
+        made(&garment).write(folder.path()).unwrap();
+        let found = Setup::read(folder.path()).unwrap().unwrap();
+        found.check_same(&made(&garment), folder.path()).unwrap();
+        let mut other = garment.clone();
+        other.mesh.positions[2].y += 1e-3;
+        assert!(found.check_same(&made(&other), folder.path()).is_err(), "another garment must be refused");
+    }
+
+    #[test]
+    fn transforms_survive_their_row_major_form() {
+        let (character, _) = scene();
+        let there = character.joints[1].inverse_bind;
+        let back = affine(&row_major(&there));
+        assert!((back.matrix3 - there.matrix3).to_cols_array().iter().all(|error| error.abs() < 1e-7));
+        assert!((back.translation - there.translation).length() < 1e-7);
+    }
 }
