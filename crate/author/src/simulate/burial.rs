@@ -35,5 +35,11 @@ fn crossing(origin: DVec3, direction: DVec3, [a, b, c]: [DVec3; 3]) -> i32 {
     let t = ac.dot(perpendicular) / determinant;
     let hit = u >= 0.0 && v >= 0.0 && u + v < 1.0 && t > 0.0;
     // The determinant is minus the direction along the normal.
-    if !hit { 0 } else if determinant < 0.0 { 1 } else { -1 }
+    if !hit {
+        0
+    } else if determinant < 0.0 {
+        1
+    } else {
+        -1
+    }
 }

@@ -55,16 +55,6 @@ impl Collider {
         Ok(collider)
     }
 
-    /// All of the body.
-    pub fn whole(character: &Character) -> Result<Self> {
-        check(character)?;
-        let collider = Self::of_joints(character, &vec![true; character.joints.len()]);
-        if collider.faces.is_empty() {
-            return Err(Error::Simulation("body: wanted triangles with an area, found none".into()));
-        }
-        Ok(collider)
-    }
-
     /// The body, touched where a joint marked in `near` moves a corner most.
     fn of_joints(character: &Character, near: &[bool]) -> Self {
         let body = &character.body.positions;
