@@ -1,6 +1,6 @@
 //! The part of the body a garment can touch: its triangles, adjacency and skin, without a pose.
-//! Far joints (hands below a T-shirt) are left out whole: they cost time, and a thin part far away only pinches.
-//! Leaving out single far triangles was tried and cut holes into limbs that later met the cloth.
+//! Far joints (hands below a T-shirt) are not touched at all: a thin part far away only pinches. Leaving single far
+//! triangles untouched was tried and made holes in limbs that later met the cloth.
 
 use std::collections::BTreeMap;
 
@@ -14,7 +14,7 @@ use super::posed::PosedBody;
 use crate::rig::{Character, Mesh, SkinWeights};
 use crate::{Error, Result};
 
-/// Body triangles of the joints within reach of the garment, in the canonical pose.
+/// The body in the canonical pose.
 #[derive(Clone)]
 pub(super) struct Collider {
     /// Canonical positions of the vertices used, metres.
@@ -23,6 +23,8 @@ pub(super) struct Collider {
     pub weights: Vec<SkinWeights>,
     /// Faces over the vertices used.
     pub faces: Vec<[u32; 3]>,
+    /// Whether cloth touches a face at all; the others only close the surface.
+    pub touched: Vec<bool>,
     /// Face across each edge (edge k from corner k to k + 1); the face itself at a border.
     pub neighbours: Vec<[u32; 3]>,
     /// Bounding volume tree over the canonical faces, refitted per pose.
@@ -46,21 +48,28 @@ impl Collider {
         for (weights, distance) in character.weights.iter().zip(&distance) {
             near[strongest(weights)] |= *distance < reach;
         }
+        let collider = Self::of_joints(character, &near);
+        if !collider.touched.contains(&true) {
+            return Err(Error::Garment(format!("wanted body triangles within {reach} m, found none")));
+        }
+        Ok(collider)
+    }
+
+    /// The body, touched where a joint marked in `near` moves a corner most.
+    fn of_joints(character: &Character, near: &[bool]) -> Self {
+        let body = &character.body.positions;
         let mut used = BTreeMap::new();
-        let mut faces = Vec::new();
+        let (mut faces, mut touched) = (Vec::new(), Vec::new());
         for triangle in &character.body.triangles {
             let [a, b, c] = triangle.map(|i| body[i as usize]);
             let area = (b - a).cross(c - a).length();
-            let kept = triangle.iter().any(|&i| near[strongest(&character.weights[i as usize])]);
-            if kept && area > 1e-8 * (b - a).length_squared().max((c - a).length_squared()) {
+            if area > 1e-8 * (b - a).length_squared().max((c - a).length_squared()) {
                 faces.push(triangle.map(|i| {
                     let next = used.len() as u32;
                     *used.entry(i as usize).or_insert(next)
                 }));
+                touched.push(triangle.iter().any(|&i| near[strongest(&character.weights[i as usize])]));
             }
-        }
-        if faces.is_empty() {
-            return Err(Error::Garment(format!("wanted body triangles within {reach} m, found none")));
         }
         let mut rest = vec![DVec3::ZERO; used.len()];
         let mut weights = vec![Vec::new(); used.len()];
@@ -71,7 +80,7 @@ impl Collider {
         let neighbours = neighbours(&faces);
         let boxes: Vec<Aabb> = faces.iter().map(|face| bounds(face.map(|i| rest[i as usize]))).collect();
         let tree = Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes);
-        Ok(Self { rest, weights, faces, neighbours, tree })
+        Self { rest, weights, faces, touched, neighbours, tree }
     }
 
     /// The body posed by linear blend skinning with `skinning` (`N·A_j` per joint).

@@ -2,6 +2,7 @@
 //! Implicit Newton on the true elastic energy, f64, fixed order of sums: the same pose gives the same bits.
 
 mod bending;
+mod burial;
 mod cloth;
 mod collider;
 mod contact;

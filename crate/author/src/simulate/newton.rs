@@ -25,6 +25,8 @@ const EXACT_ABOVE: f64 = 10.0;
 /// Factor by which a contact that gave way too far is stiffened, and how often it may be.
 const STIFFENING: f64 = 3.0;
 const STIFFEST: f64 = 30.0;
+/// Changes of contact planes after which a vertex is let go.
+const MOST_CHANGES: u32 = 8;
 
 /// Hessian layout of a cloth: the pattern and where each element's blocks lie.
 pub(super) struct Layout {
@@ -109,9 +111,11 @@ pub(super) struct Solver<'a> {
     gradient: Vec<DVec3>,
     /// Contact stiffness per mass, 1/s² [n].
     stiffness: Vec<f64>,
-    /// Vertices squeezed between two sides of the body, and left alone until it moves [n]. Where a skinned body cuts
-    /// into itself no place is outside all of it; pushing from side to side never came to rest.
+    /// Vertices let go because the body has no room for them [n].
     pub pinched: Vec<bool>,
+    /// Normals of the last contact planes, and how often they have changed since the body came to rest [n].
+    planes: Vec<[DVec3; 2]>,
+    changes: Vec<u32>,
     /// Lower bound of the distance to the body [n].
     clearance: Vec<f64>,
 }
@@ -137,6 +141,8 @@ impl<'a> Solver<'a> {
             gradient: vec![DVec3::ZERO; n],
             stiffness: vec![settings.contact_stiffness; n],
             pinched: vec![false; n],
+            planes: vec![[DVec3::ZERO; 2]; n],
+            changes: vec![0; n],
             clearance: vec![0.0; n],
         }
     }
@@ -205,18 +211,18 @@ impl<'a> Solver<'a> {
         self.inside = 0;
         let Some(body) = body else { return least };
         for i in 0..self.positions.len() {
-            if self.pinched[i] || self.clearance[i] > thickness + MARGIN {
+            if self.clearance[i] > thickness + MARGIN || self.stiffening && self.pinched[i] {
                 continue;
             }
             let (x, reach) = (self.positions[i], thickness + 2.0 * MARGIN);
             let hit = body.closest(x, self.tracked[i], reach);
             self.clearance[i] = hit.map_or(reach, |hit| hit.distance.max(0.0));
             let Some(hit) = hit.filter(|hit| hit.distance < thickness + MARGIN) else { continue };
-            if body.is_squeezed(x, &hit, self.tracked[i], 2.0 * thickness, reach) {
-                self.pinched[i] = true;
+            self.tracked[i] = Some(hit.face);
+            self.pinched[i] = body.is_buried(hit.face, thickness);
+            if self.pinched[i] {
                 continue;
             }
-            self.tracked[i] = Some(hit.face);
             least = least.min(hit.distance);
             self.inside += usize::from(hit.distance < 0.0);
             let limit = STIFFEST * self.settings.contact_stiffness;
@@ -224,13 +230,27 @@ impl<'a> Solver<'a> {
                 self.stiffness[i] *= STIFFENING;
             }
             self.contacts.push(self.contact(i, &hit, self.cloth.friction));
-            if hit.distance < 1.5 * thickness
-                && let Some(second) = body.across_crease(x, &hit, 2.0 * thickness)
-            {
-                self.contacts.push(self.contact(i, &second, 0.0));
+            let near_crease = hit.distance < 1.5 * thickness;
+            let second = near_crease.then(|| body.across_crease(x, &hit, 2.0 * thickness)).flatten();
+            let second = second.filter(|second| !body.is_buried(second.face, thickness));
+            if let Some(second) = &second {
+                self.contacts.push(self.contact(i, second, 0.0));
+            }
+            if self.stiffening && near_crease {
+                self.watch(i, [hit.normal, second.map_or(hit.normal, |second| second.normal)]);
             }
         }
         least
+    }
+
+    /// Lets a vertex go whose contact planes keep changing: a crease of more sides than two planes can describe.
+    fn watch(&mut self, vertex: usize, planes: [DVec3; 2]) {
+        let known = |plane: DVec3| self.planes[vertex].iter().any(|old| *old == DVec3::ZERO || old.dot(plane) > 0.9);
+        if !planes.into_iter().all(known) {
+            self.changes[vertex] += 1;
+        }
+        self.planes[vertex] = planes;
+        self.pinched[vertex] |= self.changes[vertex] >= MOST_CHANGES;
     }
 
     fn contact(&self, vertex: usize, hit: &Hit, friction: f64) -> Contact {

@@ -1,15 +1,20 @@
 //! Signed distance to the posed body: closest point by a bounding volume tree, sign by angle-weighted pseudo-normals
 //! (Bærentzen & Aanæs 2005). Linear blend skinning makes bodies that cut through themselves, so depth is limited.
 
+use std::cell::Cell;
+
 use glam::DVec3;
 use parry3d_f64::partitioning::{Bvh, BvhNode};
 
+use super::burial::winding;
 use super::collider::{Collider, bounds};
 
 /// How far behind a face a point may lie and still be pushed out through it, metres.
 const DEPTH: f64 = 0.05;
-/// The same for a face turned against the one the point was last near: the far side of a thin part, or another limb.
-const DEPTH_OPPOSED: f64 = 0.012;
+/// Canonical distance within which faces that look the same way belong to one part, metres.
+const SAME_PART: f64 = 0.12;
+/// [`DEPTH`] for other parts than the one the point was last near: the far side of a thin part, or another limb.
+const DEPTH_ELSEWHERE: f64 = 0.012;
 
 /// Two sides of a crease differ by at least the angle with this cosine.
 const CREASE: f64 = 0.75;
@@ -19,8 +24,6 @@ const CREASE: f64 = 0.75;
 enum Faces {
     /// All.
     All,
-    /// Those that look the way of the tracked one.
-    Own,
     /// Those that look another way than this normal.
     Across(DVec3),
 }
@@ -46,6 +49,8 @@ pub(super) struct PosedBody<'a> {
     face_normals: Vec<DVec3>,
     vertex_normals: Vec<DVec3>,
     tree: Bvh,
+    /// Faces found to be buried or not.
+    buried: Vec<Cell<Option<bool>>>,
 }
 
 impl<'a> PosedBody<'a> {
@@ -67,7 +72,8 @@ impl<'a> PosedBody<'a> {
             tree.update_partially_if_present(bounds(corners), index as u32, 0.0);
         }
         tree.refit_without_opt();
-        Self { collider, positions, face_normals, vertex_normals, tree }
+        let buried = vec![Cell::new(None); collider.faces.len()];
+        Self { collider, positions, face_normals, vertex_normals, tree, buried }
     }
 
     /// The closest body point within `reach` metres, or none. `tracked`: the face found before, which speeds up the
@@ -82,18 +88,23 @@ impl<'a> PosedBody<'a> {
         (hit.normal.dot(first.normal) < CREASE).then_some(hit)
     }
 
-    /// Whether a point is squeezed between two sides of a body that cuts into itself: behind a face that looks against
-    /// the `tracked` one, and not `gap` metres clear of its own side.
-    pub fn is_squeezed(&self, point: DVec3, hit: &Hit, tracked: Option<u32>, gap: f64, reach: f64) -> bool {
-        let opposed = tracked.is_some_and(|old| self.face_normals[old as usize].dot(hit.normal) <= 0.0);
-        hit.distance < 0.0
-            && opposed
-            && self.search(point, tracked, reach, Faces::Own).is_some_and(|own| own.distance <= gap)
+    /// Whether another part of the body lies within `gap` metres above a face, or the face is inside one.
+    pub fn is_buried(&self, face: u32, gap: f64) -> bool {
+        let known = &self.buried[face as usize];
+        known.get().unwrap_or_else(|| {
+            let corners = |face: u32| self.collider.faces[face as usize].map(|i| self.positions[i as usize]);
+            let [a, b, c] = corners(face);
+            let above = (a + b + c) / 3.0 + self.face_normals[face as usize] * gap;
+            // A direction without symmetry: rays along body axes run through edges.
+            let direction = DVec3::new(0.8313, 0.2231, 0.5090);
+            let buried = winding(&self.tree, above, direction, corners) != 0;
+            known.set(Some(buried));
+            buried
+        })
     }
 
     fn search(&self, point: DVec3, tracked: Option<u32>, reach: f64, faces: Faces) -> Option<Hit> {
-        let side = tracked.map(|face| self.face_normals[face as usize]);
-        let guess = tracked.and_then(|face| Some((face, self.candidate(face, point, side, faces, reach * reach)?)));
+        let guess = tracked.and_then(|face| Some((face, self.candidate(face, point, tracked, faces, reach * reach)?)));
         let bound = guess.as_ref().map_or(reach * reach, |(_, (squared, _))| *squared);
         let p = point.to_array();
         let box_distance = |node: &BvhNode, _: f64| {
@@ -102,7 +113,7 @@ impl<'a> PosedBody<'a> {
             gap(0) * gap(0) + gap(1) * gap(1) + gap(2) * gap(2)
         };
         let found =
-            self.tree.find_best(bound, box_distance, |face, best| self.candidate(face, point, side, faces, best));
+            self.tree.find_best(bound, box_distance, |face, best| self.candidate(face, point, tracked, faces, best));
         let (face, (squared, spot)) = found.or(guess)?;
         let offset = point - spot.point;
         let distance = squared.sqrt();
@@ -112,7 +123,10 @@ impl<'a> PosedBody<'a> {
     }
 
     /// Squared distance to a face and where, if below `best` and not refused as too deep.
-    fn candidate(&self, face: u32, point: DVec3, side: Option<DVec3>, faces: Faces, best: f64) -> Option<(f64, Spot)> {
+    fn candidate(&self, face: u32, point: DVec3, tracked: Option<u32>, faces: Faces, best: f64) -> Option<(f64, Spot)> {
+        if !self.collider.touched[face as usize] {
+            return None;
+        }
         let corners = self.collider.faces[face as usize];
         let barycentric = closest_on_triangle(point, corners.map(|i| self.positions[i as usize]));
         let foot: DVec3 = (0..3).map(|k| self.positions[corners[k] as usize] * barycentric[k]).sum();
@@ -121,15 +135,17 @@ impl<'a> PosedBody<'a> {
             return None;
         }
         let normal = self.pseudo_normal(face, barycentric);
-        let own = side.is_none_or(|side| side.dot(normal) > 0.0);
+        let own = tracked.is_none_or(|old| {
+            let place = |face: u32| self.collider.rest[self.collider.faces[face as usize][0] as usize];
+            self.face_normals[old as usize].dot(normal) > 0.0 && place(old).distance(place(face)) < SAME_PART
+        });
         let behind = (point - foot).dot(normal) < 0.0;
         let refused = match faces {
             Faces::All => false,
-            Faces::Own => !own,
             // Behind a face turned all the way round is not a crease but the far side of a thin part.
             Faces::Across(first) => !(if behind { -CREASE } else { -1.0 }..CREASE).contains(&first.dot(normal)),
         };
-        let limit = if own { DEPTH } else { DEPTH_OPPOSED };
+        let limit = if own { DEPTH } else { DEPTH_ELSEWHERE };
         if refused || behind && (squared > limit * limit || self.on_border(face, barycentric)) {
             return None;
         }
