@@ -46,7 +46,7 @@ impl Default for Settings {
             path_steps: 24,
             path_iterations: 2,
             path_time_step: 0.05,
-            relax_iterations: 90,
+            relax_iterations: 200,
             residual: 1e-2,
             drift: 5e-4,
             caught: 0.02,
