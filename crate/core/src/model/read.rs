@@ -5,18 +5,18 @@ use crate::file::Tensors;
 use crate::pose::{Frame, Rig};
 use crate::topology::Graph;
 use crate::{Error, Result};
-use miniserde::{Deserialize, json};
+use miniserde::{Deserialize, Serialize, json};
 
 /// The JSON object under `__metadata__["ctsn"]`.
-#[derive(Deserialize)]
-struct Description {
-    version: u32,
-    frame: String,
-    root: usize,
-    joints: Vec<String>,
-    inverse_bind: Vec<Vec<f32>>,
-    heads: usize,
-    edge_scale: f32,
+#[derive(Deserialize, Serialize)]
+pub(super) struct Description {
+    pub version: u32,
+    pub frame: String,
+    pub root: usize,
+    pub joints: Vec<String>,
+    pub inverse_bind: Vec<Vec<f32>>,
+    pub heads: usize,
+    pub edge_scale: f32,
 }
 
 impl HostModel {

@@ -1,10 +1,10 @@
 //! Model -> model file, the inverse of `read.rs`. network.md §8.
 
-use super::read::transpose;
+use super::read::{Description, transpose};
 use super::{HostModel, Linear, Skin};
 use crate::file::{Tensor, Tensors};
 use crate::pose::Frame;
-use miniserde::{Serialize, json};
+use miniserde::json;
 
 /// How learned tensors are stored; everything else stays F32.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -13,17 +13,6 @@ pub enum Storage {
     F32,
     /// 16-bit floats: half the bytes.
     F16,
-}
-
-#[derive(Serialize)]
-struct Description {
-    version: u32,
-    frame: String,
-    root: usize,
-    joints: Vec<String>,
-    inverse_bind: Vec<Vec<f32>>,
-    heads: usize,
-    edge_scale: f32,
 }
 
 struct Writer {
