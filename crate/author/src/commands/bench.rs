@@ -1,8 +1,9 @@
 //! `ctsn bench`: milliseconds per prediction and per training step on this machine.
 
+use super::Network;
 use anyhow::Result;
 use ctsn_author::synthetic;
-use ctsn_author::train::{Architecture, Settings, Trainer};
+use ctsn_author::train::{Settings, Trainer};
 use ctsn_core::cpu::Level;
 use ctsn_core::model::Storage;
 use ctsn_core::{Predictor, Streams};
@@ -18,18 +19,8 @@ pub struct Arguments {
     /// Joints
     #[arg(long, default_value_t = 65)]
     joints: usize,
-    /// Size of the pose embedding, m
-    #[arg(long, default_value_t = 32)]
-    embedding: usize,
-    /// Mesh basis matrices, k
-    #[arg(long, default_value_t = 64)]
-    basis: usize,
-    /// Graph transformer layers, L
-    #[arg(long, default_value_t = 2)]
-    layers: usize,
-    /// Features of a graph layer, F, in 4 heads
-    #[arg(long, default_value_t = 64)]
-    features: usize,
+    #[command(flatten)]
+    network: Network,
     /// Predictions timed
     #[arg(long, default_value_t = 200)]
     runs: usize,
@@ -42,8 +33,8 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> Result<()> {
-    let Arguments { vertices, joints, embedding, basis, layers, features, runs, .. } = *arguments;
-    let architecture = Architecture { embedding, basis, layers, heads: 4, features };
+    let Arguments { vertices, joints, runs, .. } = *arguments;
+    let architecture = arguments.network.architecture();
     let (setup, samples) = synthetic::dataset(vertices, joints, 16);
     let samples: Vec<_> = samples.iter().collect();
     let model = ctsn_author::train::initial(&setup, &samples, architecture, 1)?;

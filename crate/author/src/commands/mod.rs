@@ -13,9 +13,38 @@ pub mod train;
 
 use anyhow::{Context, Result};
 use ctsn_author::dataset;
+use ctsn_author::train::Architecture;
 use ctsn_core::model::HostModel;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::path::Path;
+
+/// Sizes of the network that are free to choose, for every command that makes one.
+#[derive(clap::Args, Clone)]
+pub struct Network {
+    /// Size of the pose embedding, m
+    #[arg(long, default_value_t = 32)]
+    embedding: usize,
+    /// Mesh basis matrices, k
+    #[arg(long, default_value_t = 64)]
+    basis: usize,
+    /// Graph transformer layers, L
+    #[arg(long, default_value_t = 2)]
+    layers: usize,
+    /// Attention heads, C
+    #[arg(long, default_value_t = 4)]
+    heads: usize,
+    /// Features of a graph layer, F
+    #[arg(long, default_value_t = 64)]
+    features: usize,
+}
+
+impl Network {
+    /// The architecture these arguments describe.
+    pub fn architecture(&self) -> Architecture {
+        let Self { embedding, basis, layers, heads, features } = *self;
+        Architecture { embedding, basis, layers, heads, features }
+    }
+}
 
 /// Reads a model file, naming it in errors.
 pub fn model(path: &Path) -> Result<HostModel> {

@@ -1,9 +1,9 @@
 //! `ctsn train`: the network from a dataset.
 
-use super::{bar, file_name};
+use super::{Network, bar, file_name};
 use anyhow::Result;
 use ctsn_author::dataset::{self, Dataset, Split};
-use ctsn_author::train::{self, Architecture, Loss, Trainer};
+use ctsn_author::train::{self, Loss, Trainer};
 use ctsn_core::model::Storage;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -37,21 +37,8 @@ pub struct Settings {
     /// Seed of initial weights and order
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Size of the pose embedding, m
-    #[arg(long, default_value_t = 32)]
-    embedding: usize,
-    /// Mesh basis matrices, k
-    #[arg(long, default_value_t = 64)]
-    basis: usize,
-    /// Graph transformer layers, L
-    #[arg(long, default_value_t = 2)]
-    layers: usize,
-    /// Attention heads, C
-    #[arg(long, default_value_t = 4)]
-    heads: usize,
-    /// Features of a graph layer, F
-    #[arg(long, default_value_t = 64)]
-    features: usize,
+    #[command(flatten)]
+    network: Network,
     /// Storage of learned tensors
     #[arg(long, value_enum, default_value = "f16")]
     storage: StorageArgument,
@@ -69,11 +56,10 @@ enum StorageArgument {
 const CHECKPOINT: usize = 5;
 
 pub fn run(arguments: &Arguments) -> Result<()> {
-    let Settings { epochs, batch, learning_rate, seed, embedding, basis, layers, heads, features, storage } =
-        arguments.settings.clone();
+    let Settings { epochs, batch, learning_rate, seed, ref network, storage } = arguments.settings;
     let dataset = Dataset::read(&arguments.dataset)?;
     let samples = dataset.split(Split::Train);
-    let architecture = Architecture { embedding, basis, layers, heads, features };
+    let architecture = network.architecture();
     let model = train::initial(&dataset.setup, &samples, architecture, seed)?;
     let settings = train::Settings { epochs, batch, rate: learning_rate, seed };
     let mut trainer = Trainer::new(model, &dataset.setup, &samples, settings)?;
