@@ -39,7 +39,7 @@ pub struct Layer<'a> {
     pub normals: &'a [DVec3],
     /// Vertex indices.
     pub triangles: &'a [[u32; 3]],
-    /// Linear RGB per triangle; the last one serves all further triangles, so one colour paints all.
+    /// Linear RGB per vertex; the last one serves all further vertices, so one colour paints all.
     pub colour: &'a [[f32; 3]],
     /// Draw the backs of triangles, darker: cloth is open, bodies are closed.
     pub two_sided: bool,
@@ -106,11 +106,15 @@ pub fn render_dressed(
     let body = character.pose_body(pose);
     let normals = character.body.normals(&body);
     let surface = &character.surface;
-    let drawn =
-        surface.triangles.iter().map(|triangle| triangle.map(|corner| surface.vertex[corner as usize])).collect();
-    let triangles = if surface.triangles.is_empty() { character.body.triangles.clone() } else { drawn };
-    let colour = if surface.colour.is_empty() { vec![BODY] } else { surface.colour.clone() };
-    let skin = Layer { positions: &body, normals: &normals, triangles: &triangles, colour: &colour, two_sided: false };
+    let at_drawn = |of_body: &[DVec3]| surface.vertex.iter().map(|&at| of_body[at as usize]).collect::<Vec<_>>();
+    let drawn = [at_drawn(&body), at_drawn(&normals)];
+    let colour = if surface.colour.is_empty() { &[BODY][..] } else { &surface.colour };
+    let skin = if surface.triangles.is_empty() {
+        Layer { positions: &body, normals: &normals, triangles: &character.body.triangles, colour, two_sided: false }
+    } else {
+        let [positions, normals] = &drawn;
+        Layer { positions, normals, triangles: &surface.triangles, colour, two_sided: false }
+    };
     let mut layers = vec![skin];
     let cloth_normals = cloth.map_or(Vec::new(), |(positions, triangles)| {
         Mesh { positions: Vec::new(), triangles: triangles.to_vec() }.normals(positions)
@@ -154,10 +158,11 @@ impl Canvas {
     }
 
     fn draw(&mut self, layer: &Layer) {
-        for (at, triangle) in layer.triangles.iter().enumerate() {
+        for triangle in layer.triangles {
             let corners = triangle.map(|corner| self.project(layer.positions[corner as usize]));
             let normals = triangle.map(|corner| self.axes * layer.normals[corner as usize]);
-            let colour = layer.colour.get(at).or(layer.colour.last()).unwrap_or(&BODY).map(f64::from);
+            let painted = |corner: u32| layer.colour.get(corner as usize).or(layer.colour.last()).unwrap_or(&BODY);
+            let colours = triangle.map(|corner| DVec3::from(painted(corner).map(f64::from)));
             let two_sided = layer.two_sided;
             self.fill(corners, |share, front| {
                 let normal = normals[0] * share.x + normals[1] * share.y + normals[2] * share.z;
@@ -166,7 +171,7 @@ impl Canvas {
                     (false, true) => shade(-normal) * BACK,
                     (false, false) => return None,
                 };
-                Some(DVec3::from(colour) * light)
+                Some((colours[0] * share.x + colours[1] * share.y + colours[2] * share.z) * light)
             });
         }
     }

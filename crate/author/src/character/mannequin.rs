@@ -1,7 +1,7 @@
 //! The mannequin: an androgynous shop-window figure of 1.76 m in an A-pose, arms 42° below the horizontal.
 //! Feet on y = 0, facing +Z. Proportions of an eight-head fashion figure; lengths in metres.
 
-use super::figure::{Figure, JointRow, Part};
+use super::figure::{Figure, JointRow, PART, Part};
 
 const UP: [f64; 3] = [0.0, 1.0, 0.0];
 const FRONT: [f64; 3] = [0.0, 0.0, 1.0];
@@ -56,6 +56,7 @@ const PARTS: &[Part] = &[
             ("Spine2", 0.415, 0.07),
             ("Neck", 0.605, 0.04),
         ],
+        ..PART
     },
     // Breast.
     Part {
@@ -68,6 +69,7 @@ const PARTS: &[Part] = &[
         blend: 0.065,
         edge: 0.020,
         joints: &[("Spine2", 0.0, 0.01), ("LeftShoulder", 0.2, 0.01)],
+        ..PART
     },
     // Seat.
     Part {
@@ -80,6 +82,7 @@ const PARTS: &[Part] = &[
         blend: 0.05,
         edge: 0.022,
         joints: &[("Hips", 0.0, 0.01), ("LeftUpLeg", 0.055, 0.085)],
+        ..PART
     },
     // Neck.
     Part {
@@ -97,6 +100,7 @@ const PARTS: &[Part] = &[
         blend: 0.06,
         edge: 0.016,
         joints: &[("Spine2", 0.0, 0.01), ("Neck", 0.055, 0.045), ("Head", 0.150, 0.035)],
+        ..PART
     },
     // Head: an egg.
     Part {
@@ -109,6 +113,7 @@ const PARTS: &[Part] = &[
         blend: 0.026,
         edge: 0.013,
         joints: &[("Neck", 0.0, 0.01), ("Head", 0.0, 0.01)],
+        ..PART
     },
     // Chin.
     Part {
@@ -121,6 +126,7 @@ const PARTS: &[Part] = &[
         blend: 0.06,
         edge: 0.013,
         joints: &[("Head", 0.0, 0.01)],
+        ..PART
     },
     // Ridge of the nose: gives the face a direction, no more.
     Part {
@@ -137,6 +143,7 @@ const PARTS: &[Part] = &[
         blend: 0.032,
         edge: 0.009,
         joints: &[("Head", 0.0, 0.01)],
+        ..PART
     },
     // Collar bone and trapezius.
     Part {
@@ -153,6 +160,7 @@ const PARTS: &[Part] = &[
         blend: 0.06,
         edge: 0.020,
         joints: &[("Spine2", 0.0, 0.01), ("LeftShoulder", 0.055, 0.050), ("LeftArm", 0.165, 0.045)],
+        ..PART
     },
     // Arm, shoulder to wrist.
     Part {
@@ -180,6 +188,7 @@ const PARTS: &[Part] = &[
             ("LeftForeArm", 0.282, 0.048),
             ("LeftHand", 0.538, 0.035),
         ],
+        ..PART
     },
     // Palm; thin across, thumb in front.
     Part {
@@ -196,6 +205,7 @@ const PARTS: &[Part] = &[
         blend: 0.03,
         edge: 0.011,
         joints: &[("LeftForeArm", -0.05, 0.01), ("LeftHand", 0.0, 0.035)],
+        ..PART
     },
     finger(0.0065, 1.00, INDEX),
     finger(-0.0115, 1.01, MIDDLE),
@@ -216,6 +226,7 @@ const PARTS: &[Part] = &[
         blend: 0.024,
         edge: 0.009,
         joints: &[("LeftHand", 0.0, 0.01)],
+        ..PART
     },
     // Leg, hip to ankle.
     Part {
@@ -245,6 +256,7 @@ const PARTS: &[Part] = &[
             ("LeftLeg", 0.450, 0.062),
             ("LeftFoot", 0.862, 0.040),
         ],
+        ..PART
     },
     // Foot, heel to toes; the sections' front is up, and centre - back = 0 at the ground.
     Part {
@@ -263,6 +275,7 @@ const PARTS: &[Part] = &[
         blend: 0.035,
         edge: 0.013,
         joints: &[("LeftFoot", 0.0, 0.01), ("LeftToeBase", 0.163, 0.022)],
+        ..PART
     },
 ];
 
@@ -286,5 +299,6 @@ const fn finger(z: f64, knuckle: f64, sections: &'static [[f64; 5]]) -> Part {
         blend: 0.009,
         edge: 0.0085,
         joints: &[("LeftHand", 0.0, 0.01)],
+        ..PART
     }
 }
