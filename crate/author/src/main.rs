@@ -3,7 +3,7 @@
 mod commands;
 
 use clap::{Parser, Subcommand};
-use commands::{bake, bench, character, evaluate, garment, inspect, predict, render, simulate, train};
+use commands::{bake, bench, character, evaluate, garment, inspect, motion, predict, render, simulate, train};
 
 /// Learned cloth for any skinned character.
 ///
@@ -14,6 +14,7 @@ use commands::{bake, bench, character, evaluate, garment, inspect, predict, rend
 ///
 /// The same by steps, each resumable:
 ///
+///   ctsn motion character.glb -o moving.glb           clips, if it has none
 ///   ctsn garment character.glb -o garment.glb         a garment, if you have none
 ///   ctsn simulate character.glb garment.glb -o data   quasi-static truth for every frame of the clips
 ///   ctsn train data -o model.safetensors              the network, from the first 90 % of every clip
@@ -30,6 +31,7 @@ struct Cli {
 enum Command {
     Bake(bake::Arguments),
     Character(character::Arguments),
+    Motion(motion::Arguments),
     Garment(garment::Arguments),
     Simulate(simulate::Arguments),
     Train(train::Arguments),
@@ -43,6 +45,7 @@ enum Command {
 fn main() -> std::process::ExitCode {
     let result = match Cli::parse().command {
         Command::Character(arguments) => character::run(&arguments),
+        Command::Motion(arguments) => motion::run(&arguments),
         Command::Garment(arguments) => garment::run(&arguments),
         Command::Render(arguments) => render::run(&arguments),
         Command::Inspect(arguments) => inspect::run(&arguments),

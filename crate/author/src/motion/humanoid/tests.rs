@@ -1,6 +1,7 @@
 //! Motion must be finite, closed, smooth, on the floor and within reach of the joints.
 
 use super::*;
+use crate::motion::{RATE, clips};
 use crate::rig::{Joint, Mesh, Surface};
 use glam::{DAffine3, DQuat, DVec3};
 
