@@ -59,6 +59,58 @@ pub const PART: Part = Part {
     joints: &[],
 };
 
+impl Part {
+    /// An ellipsoid at `centre` with half-axes along x, z and y, metres: turn it with [`Part::along`].
+    pub const fn ball(centre: [f64; 3], half_axes: [f64; 3]) -> Part {
+        Part { start: centre, size: half_axes, ..PART }
+    }
+
+    /// A loft from `start` through `sections`.
+    pub const fn loft(start: [f64; 3], sections: &'static [[f64; 5]], caps: [f64; 2]) -> Part {
+        Part { start, sections, caps, ..PART }
+    }
+
+    /// The same with its chord and its front axis elsewhere.
+    pub const fn along(self, along: [f64; 3], front: [f64; 3]) -> Part {
+        Part { along, front, ..self }
+    }
+
+    /// The same with factors on side, front and length.
+    pub const fn size(self, size: [f64; 3]) -> Part {
+        Part { size, ..self }
+    }
+
+    /// The same with another radius of the smooth union, and edge length.
+    pub const fn blend(self, blend: f64, edge: f64) -> Part {
+        Part { blend, edge, ..self }
+    }
+
+    /// The same with another superellipse exponent.
+    pub const fn exponent(self, exponent: f64) -> Part {
+        Part { exponent, ..self }
+    }
+
+    /// The same, following these joints.
+    pub const fn on(self, joints: &'static [(&'static str, f64, f64)]) -> Part {
+        Part { joints, ..self }
+    }
+
+    /// The same in a colour of its own.
+    pub const fn coloured(self, colour: [f32; 3]) -> Part {
+        Part { colour: Some(colour), ..self }
+    }
+
+    /// The same with another role.
+    pub const fn role(self, role: Role) -> Part {
+        Part { role, ..self }
+    }
+
+    /// The same in another shell.
+    pub const fn shell(self, shell: usize) -> Part {
+        Part { shell, ..self }
+    }
+}
+
 /// A character's shape and skeleton.
 #[derive(Clone, Copy, Debug)]
 pub struct Figure {

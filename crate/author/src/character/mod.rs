@@ -1,10 +1,13 @@
 //! The project's own characters, built from tables: smooth union of lofts -> even mesh -> skin weights -> motion.
 //! simulation.md §4.1.
 
+mod andy;
 mod colour;
 mod figure;
 mod loft;
 mod mannequin;
+mod monster;
+mod qman;
 mod remesh;
 mod surface;
 mod weights;
@@ -19,7 +22,8 @@ use glam::DVec3;
 use loft::Loft;
 
 /// Every character this module can build, by name.
-const FIGURES: &[(&str, Figure)] = &[("mannequin", mannequin::MANNEQUIN)];
+const FIGURES: &[(&str, Figure)] =
+    &[("mannequin", mannequin::MANNEQUIN), ("andy", andy::ANDY), ("qman", qman::QMAN), ("monster", monster::MONSTER)];
 
 /// The character of that name, with the project's clips.
 pub fn character(name: &str) -> Result<Character> {
