@@ -1,12 +1,14 @@
 //! Motion of a body with two arms and two legs: gaits, moves, seeded wanderings, the showcase.
 //! Feet stay on the floor by inverse kinematics; the root stays within a metre.
 
+mod calm;
 mod exercises;
 mod gait;
 mod moves;
 mod posture;
 mod showcase;
 mod skeleton;
+mod sport;
 mod wander;
 
 pub use posture::{Posture, through};
@@ -26,14 +28,23 @@ pub fn clips(character: &Character, rate: f64) -> Result<Vec<Clip>> {
     let mut clips = vec![
         play("showcase", showcase::PERIOD, &|time| showcase::at(&moves, time)),
         play("walk", 4.0 * gait::WALK.stride, &|time| gait::WALK.at(time)),
-        play("jog", 6.0 * gait::JOG.stride, &|time| gait::JOG.at(time)),
     ];
+    let gaits = [
+        ("jog", gait::JOG, 6.0),
+        ("run", gait::RUN, 6.0),
+        ("crouch walk", gait::CROUCH, 3.0),
+        ("march", gait::MARCH, 4.0),
+    ];
+    for (name, gait, strides) in gaits {
+        clips.push(play(name, strides * gait.stride, &|time| gait.at(time)));
+    }
     for each in &moves {
         clips.push(play(each.name, each.period, &|time| through(&each.keys, each.period, time)));
     }
-    for seed in 1..=2 {
-        let keys = wander::keys(seed);
-        clips.push(play(&format!("wander {seed}"), wander::PERIOD, &|time| through(&keys, wander::PERIOD, time)));
+    for which in 0..wander::COUNT {
+        let keys = wander::keys(which);
+        let name = format!("wander {}", which + 1);
+        clips.push(play(&name, wander::PERIOD, &|time| through(&keys, wander::PERIOD, time)));
     }
     Ok(clips)
 }

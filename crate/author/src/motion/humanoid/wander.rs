@@ -1,50 +1,49 @@
-//! Seeded random postures within joint limits, joined smoothly: what a network should see between the authored moves.
+//! Postures that cover the joint limits evenly, joined smoothly: what a network should see between the authored moves.
+//! A Korobov lattice of P points: channel c of point i is frac(i gᶜ / P), so each channel takes each of its levels once.
+//! Plain random draws left gaps; in 33 channels Halton's large primes march in step over the first hundred points.
 
-use super::moves::STAND;
 use super::posture::Posture;
 
-/// Seconds until it repeats.
-pub const PERIOD: f64 = 8.0;
-/// Key postures per period.
-const KEYS: usize = 8;
+/// Seconds until a wandering repeats.
+pub const PERIOD: f64 = 9.9;
+/// How many wanderings there are.
+pub const COUNT: u64 = 4;
+/// Key postures in a wandering.
+pub const KEYS: u64 = 9;
+/// P, a prime one above the number of all keys, and g, a primitive root of it.
+const LATTICE: (u64, u64) = (37, 5);
 
-/// Bounds of the random postures, as (least, most); arms and feet for either side.
-const LEAST: Posture = Posture {
+/// Limits, as (least, most); arms and feet for either side.
+pub const LEAST: Posture = Posture {
     heading: -20.0,
-    hips: [-0.05, -0.14, -0.04],
-    tilt: [-6.0, -16.0, -6.0],
-    spine: [-12.0, -26.0, -20.0],
-    head: [-14.0, -35.0, -12.0],
-    arms: [[26.0, -20.0, -10.0, 10.0, -10.0]; 2],
-    feet: [[0.01, 0.0, -0.07, 2.0, 0.0]; 2],
+    hips: [-0.06, -0.26, -0.05],
+    tilt: [-8.0, -18.0, -7.0],
+    spine: [-14.0, -32.0, -24.0],
+    head: [-20.0, -42.0, -14.0],
+    arms: [[20.0, -24.0, -14.0, 6.0, -12.0]; 2],
+    feet: [[0.01, 0.0, -0.12, 2.0, 0.0]; 2],
 };
-const MOST: Posture = Posture {
+/// The upper limits.
+pub const MOST: Posture = Posture {
     heading: 20.0,
-    hips: [0.05, -0.02, 0.04],
-    tilt: [12.0, 16.0, 6.0],
-    spine: [26.0, 26.0, 20.0],
-    head: [20.0, 35.0, 12.0],
-    arms: [[135.0, 60.0, 50.0, 85.0, 20.0]; 2],
-    feet: [[0.09, 0.0, 0.07, 20.0, 8.0]; 2],
+    hips: [0.06, -0.02, 0.05],
+    tilt: [16.0, 18.0, 7.0],
+    spine: [32.0, 32.0, 24.0],
+    head: [24.0, 42.0, 14.0],
+    arms: [[145.0, 76.0, 56.0, 96.0, 22.0]; 2],
+    feet: [[0.12, 0.0, 0.12, 22.0, 10.0]; 2],
 };
 
-/// Key postures of one seed. Every other one is drawn halfway to standing, as people return between gestures.
-pub fn keys(seed: u64) -> Vec<(f64, Posture)> {
-    let state = std::cell::Cell::new(seed);
-    let draw = |least: f64, most: f64| least + (most - least) * uniform(&state);
-    let key = |i: usize| {
-        let random = LEAST.zip(&MOST, draw);
-        let posture = if i.is_multiple_of(2) { random } else { random.blend(&STAND, 0.5) };
+/// Key postures of wandering number `which`, from 0.
+pub fn keys(which: u64) -> Vec<(f64, Posture)> {
+    let (prime, root) = LATTICE;
+    let key = |i: u64| {
+        let level = std::cell::Cell::new((which * KEYS + i) % (prime - 1) + 1);
+        let posture = LEAST.zip(&MOST, |least, most| {
+            level.set(level.get() * root % prime);
+            least + (most - least) * level.get() as f64 / prime as f64
+        });
         (PERIOD * i as f64 / KEYS as f64, posture)
     };
     (0..KEYS).map(key).collect()
-}
-
-/// SplitMix64 (Steele, Lea & Flood 2014), in [0, 1).
-fn uniform(state: &std::cell::Cell<u64>) -> f64 {
-    state.set(state.get().wrapping_add(0x9E37_79B9_7F4A_7C15));
-    let mut z = state.get();
-    z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-    ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
 }
