@@ -2,6 +2,7 @@
 //! Feet stay on the floor by inverse kinematics; the root stays within a metre.
 
 mod calm;
+mod clear;
 mod exercises;
 mod gait;
 mod moves;
