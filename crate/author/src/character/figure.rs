@@ -27,7 +27,7 @@ pub struct Part {
     pub exponent: f64,
     /// What it does to the rows before it in its shell.
     pub role: Role,
-    /// Radius of the smooth union with the rows before it; of paint, the width of its soft border.
+    /// Radius of the smooth union with the rows before it; of paint, the width of its soft border, 0 a crisp one.
     pub blend: f64,
     /// Which closed mesh it belongs to: 0 is the body; eyes, teeth, horns or hair have a number of their own.
     pub shell: usize,
@@ -41,6 +41,9 @@ pub struct Part {
 
 /// Sections and, as `caps: [0.99; 2]`, ends of the unit ball.
 pub const BALL: &[[f64; 5]] = &[[-0.01, 0.0, 1.0, 1.0, 1.0], [0.01, 0.0, 1.0, 1.0, 1.0]];
+
+/// Sections of a box a metre wide and deep, for crisp paint: scale it, and let its chord begin where the paint does.
+pub const BOX: &[[f64; 5]] = &[[0.0, 0.0, 0.5, 0.5, 0.5], [1.0, 0.0, 0.5, 0.5, 0.5]];
 
 /// What a row need not say: an ellipsoid of the body, upright, facing +Z.
 pub const PART: Part = Part {
@@ -68,6 +71,13 @@ impl Part {
     /// A loft from `start` through `sections`.
     pub const fn loft(start: [f64; 3], sections: &'static [[f64; 5]], caps: [f64; 2]) -> Part {
         Part { start, sections, caps, ..PART }
+    }
+
+    /// Crisp paint on all between two heights and within half a width of the middle, metres.
+    pub const fn belt([low, high]: [f64; 2], half_width: f64, colour: [f32; 3]) -> Part {
+        let size = [2.0 * half_width, 2.0 * half_width, high - low];
+        let belt = Part::loft([0.0, low, 0.0], BOX, [1e-4; 2]).size(size).role(Role::Paint);
+        belt.exponent(8.0).coloured(colour).blend(0.0, 0.02)
     }
 
     /// The same with its chord and its front axis elsewhere.

@@ -12,7 +12,7 @@ mod remesh;
 mod surface;
 mod weights;
 
-pub use figure::{BALL, Figure, JointRow, PART, Part};
+pub use figure::{BALL, BOX, Figure, JointRow, PART, Part};
 pub use loft::{Role, smoothstep};
 
 use crate::motion;
@@ -56,19 +56,18 @@ pub fn build(figure: &Figure) -> Character {
             add_shell(&mut character, &own, if shell == 0 { figure.cell } else { finest / 2.0 });
         }
     }
-    let Character { body, surface, .. } = &mut character;
-    surface.vertex = (0..body.positions.len() as u32).collect();
-    surface.triangles.clone_from(&body.triangles);
     character
 }
 
 /// Adds the closed mesh of one shell's lofts, from a grid of spacing `cell` metres.
 fn add_shell(character: &mut Character, lofts: &[Loft], cell: f64) {
     let edge = |p: DVec3| edge_length(lofts, p);
-    let mesh = remesh::remesh(&surface::extract(lofts, cell), &edge, &|p| loft::project(lofts, p), 8);
+    let project = |p: DVec3| loft::project(lofts, p);
+    let mut mesh = remesh::remesh(&surface::extract(lofts, cell), &edge, &project, 8);
+    colour::align(&mut mesh, lofts, project);
     character.weights.extend(weights::weights(&mesh, lofts, character.joints.len()));
-    character.surface.colour.extend(mesh.positions.iter().map(|&p| colour::colour(lofts, p)));
     let first = character.body.positions.len() as u32;
+    colour::draw(&mut character.surface, &mesh, lofts, first);
     character.body.triangles.extend(mesh.triangles.iter().map(|triangle| triangle.map(|corner| first + corner)));
     character.body.positions.extend(mesh.positions);
 }

@@ -57,12 +57,10 @@ const PARTS: &[Part] = &[
     // Shorts: a shape of their own, so that the border lies in a fold.
     Part::loft([0.0, 0.36, 0.0], SHORTS_WAIST, [0.055, 0.010])
         .exponent(2.2)
-        .coloured(SHORTS)
-        .blend(0.006, 0.016)
+        .blend(0.006, 0.018)
         .on(&[("Hips", 0.0, 0.01), ("Spine", 0.160, 0.055)]),
     Part::loft([0.078, 0.430, 0.0], SHORTS_LEG, [0.05, 0.008])
         .along([0.007, -0.170, 0.004], FRONT)
-        .coloured(SHORTS)
         .blend(0.012, 0.015)
         .on(&[("Hips", -0.03, 0.02), ("LeftUpLeg", 0.030, 0.060), ("LeftLeg", 0.190, 0.050)]),
     Part::loft([0.0, 0.745, -0.014], NECK, [0.03, 0.03]).blend(0.03, 0.018).on(&[
@@ -117,17 +115,18 @@ const PARTS: &[Part] = &[
         .coloured(SOLE)
         .blend(0.003, 0.012)
         .on(&[("LeftFoot", 0.0, 0.01), ("LeftToeBase", 0.175, 0.025)]),
+    Part::belt([0.2625, 0.513], 0.25, SHORTS),
     // Head: skull, cheeks, nose, ears.
-    Part::ball([0.0, 1.075, 0.000], [0.195, 0.180, 0.190]).exponent(2.1).blend(0.02, 0.022).on(HEAD),
-    Part::ball([0.0, 0.985, 0.030], [0.165, 0.150, 0.115]).blend(0.06, 0.020).on(HEAD),
-    Part::ball([0.110, 0.985, 0.105], [0.060, 0.050, 0.050]).coloured(CHEEK).blend(0.05, 0.014).on(HEAD),
+    Part::ball([0.0, 1.075, 0.000], [0.195, 0.180, 0.190]).exponent(2.1).blend(0.02, 0.027).on(HEAD),
+    Part::ball([0.0, 0.985, 0.030], [0.165, 0.150, 0.115]).blend(0.06, 0.024).on(HEAD),
+    Part::ball([0.110, 0.985, 0.105], [0.060, 0.050, 0.050]).coloured(CHEEK).blend(0.05, 0.017).on(HEAD),
     Part::ball([0.0, 1.030, 0.188], [0.027, 0.026, 0.023]).coloured(CHEEK).blend(0.012, 0.009).on(HEAD),
     Part::ball([0.196, 1.040, -0.005], [0.022, 0.036, 0.048])
         .along([0.15, 1.0, -0.1], [0.35, 0.0, 1.0])
         .blend(0.014, 0.012)
         .on(HEAD),
     // Hair with a tuft; brows.
-    Part::ball([0.0, 1.118, -0.030], [0.206, 0.186, 0.172]).shell(1).coloured(HAIR).blend(0.02, 0.028).on(HEAD),
+    Part::ball([0.0, 1.118, -0.030], [0.206, 0.186, 0.172]).shell(1).coloured(HAIR).blend(0.02, 0.030).on(HEAD),
     Part::ball([0.055, 1.235, 0.090], [0.085, 0.085, 0.050])
         .along([0.3, 1.0, 0.3], FRONT)
         .shell(2)
@@ -140,8 +139,8 @@ const PARTS: &[Part] = &[
         .coloured(HAIR)
         .blend(0.02, 0.014)
         .on(HEAD),
-    Part::ball([0.078, 1.158, 0.163], [0.009, 0.012, 0.032])
-        .along([1.0, 0.14, -0.34], FRONT)
+    Part::ball([0.078, 1.166, 0.160], [0.009, 0.012, 0.032])
+        .along([1.0, -0.10, -0.34], FRONT)
         .shell(4)
         .coloured(HAIR)
         .blend(0.002, 0.012)
