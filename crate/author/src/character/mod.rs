@@ -84,4 +84,4 @@ fn edge_length(lofts: &[Loft], p: DVec3) -> f64 {
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

@@ -1,6 +1,7 @@
 //! Motion must be finite, closed, smooth, on the floor and within reach of the joints.
 
 use super::*;
+use crate::character::tests::cast;
 use crate::motion::{RATE, clips};
 use crate::rig::{Joint, Mesh, Surface};
 use glam::{DAffine3, DQuat, DVec3};
@@ -113,35 +114,129 @@ fn bones_keep_their_lengths_and_joints_stay_rigid() {
     }
 }
 
+/// The project's own figures with two arms and two legs.
+const CAST: [&str; 4] = ["mannequin", "andy", "qman", "monster"];
+
+#[test]
+fn clips_are_many_and_long_enough() {
+    for name in CAST {
+        let clips = &cast(name).clips;
+        let seconds: f64 = clips.iter().map(|clip| (clip.poses.len() - 1) as f64 / clip.rate).sum();
+        assert!(clips.len() >= 20 && (150.0..300.0).contains(&seconds), "{name}: {} clips, {seconds} s", clips.len());
+        let names: std::collections::BTreeSet<&str> = clips.iter().map(|clip| clip.name.as_str()).collect();
+        assert_eq!(names.len(), clips.len(), "{name}: two clips of one name");
+    }
+}
+
 #[test]
 fn feet_stay_on_the_floor_and_the_root_near_its_place() {
-    let character = crate::character::character("mannequin").expect("the mannequin");
-    for clip in &character.clips {
-        for pose in clip.poses.iter().step_by(5) {
-            let low = character.pose_body(pose).iter().map(|p| p.y).fold(f64::MAX, f64::min);
-            assert!((-0.015..0.05).contains(&low), "{}: lowest point at {low} m", clip.name);
-            assert!(pose[character.root].translation.with_y(0.0).length() < 0.5, "{} wanders off", clip.name);
+    for name in CAST {
+        let character = cast(name);
+        for clip in &character.clips {
+            // How high the lowest point may be, metres: both feet leave the floor in these.
+            let most = if clip.name == "jump" { 0.40 } else { 0.06 };
+            for pose in clip.poses.iter().step_by(7) {
+                let low = character.pose_body(pose).iter().map(|p| p.y).fold(f64::MAX, f64::min);
+                assert!((-0.022..most).contains(&low), "{name}, {}: lowest point at {low} m", clip.name);
+                let root = pose[character.root].translation.with_y(0.0).length();
+                assert!(root < 0.5, "{name}, {} wanders off: {root} m", clip.name);
+            }
         }
     }
 }
 
 /// Cloth caught between forearm and trunk has no unique rest state.
 #[test]
-fn forearms_keep_clear_of_the_trunk() {
-    let character = crate::character::character("mannequin").expect("the mannequin");
-    let follows = |v: usize, parts: &[&str]| {
-        parts.iter().any(|part| character.joints[character.weights[v][0].0].name.contains(part))
+fn forearms_and_hands_keep_clear_of_the_body() {
+    for name in CAST {
+        let character = cast(name);
+        let follows = |v: usize, parts: &[&str]| {
+            parts.iter().any(|part| character.joints[character.weights[v][0].0].name.contains(part))
+        };
+        let vertices = || 0..character.body.positions.len();
+        let arm: Vec<usize> = vertices().filter(|&v| follows(v, &["ForeArm", "Hand"])).step_by(6).collect();
+        let body: Vec<usize> = vertices().filter(|&v| !follows(v, &["Arm", "Hand", "Shoulder"])).step_by(2).collect();
+        let normals = |posed: &[DVec3]| character.body.normals(posed);
+        for clip in &character.clips {
+            for (frame, pose) in clip.poses.iter().enumerate().step_by(25) {
+                let posed = character.pose_body(pose);
+                let normal = normals(&posed);
+                for &v in &arm {
+                    let square = |t: &&usize| posed[**t].distance_squared(posed[v]);
+                    let nearest = *body.iter().min_by(|a, b| square(a).total_cmp(&square(b))).expect("a body");
+                    let way = posed[v] - posed[nearest];
+                    let clear = if way.dot(normal[nearest]) < 0.0 { -way.length() } else { way.length() };
+                    assert!(clear > 0.004, "{name}, {} frame {frame}: an arm is {clear} m from the body", clip.name);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn joints_stay_within_their_limits() {
+    for name in CAST {
+        let character = cast(name);
+        let at = |joint: &str| character.joint(joint).expect("a usual name");
+        let bend = |pose: &[DAffine3], [a, b, c]: [&str; 3]| {
+            let [a, b, c] = [a, b, c].map(|joint| pose[at(joint)].translation);
+            (b - a).angle_between(c - b).to_degrees()
+        };
+        let bind = character.canonical_pose();
+        let turn = |pose: &[DAffine3], joint: usize, parent: usize| {
+            let relative =
+                |pose: &[DAffine3]| DQuat::from_mat3(&(pose[parent].matrix3.transpose() * pose[joint].matrix3));
+            relative(pose).angle_between(relative(&bind)).to_degrees()
+        };
+        for clip in &character.clips {
+            for pose in clip.poses.iter().step_by(3) {
+                for side in ["Left", "Right"] {
+                    let [arm, fore, hand] = ["Arm", "ForeArm", "Hand"].map(|part| format!("{side}{part}"));
+                    let [thigh, shank, foot] = ["UpLeg", "Leg", "Foot"].map(|part| format!("{side}{part}"));
+                    let (elbow, knee) = (bend(pose, [&arm, &fore, &hand]), bend(pose, [&thigh, &shank, &foot]));
+                    assert!(elbow < 125.0, "{name}, {}: elbow at {elbow}°", clip.name);
+                    assert!(knee < 150.0, "{name}, {}: knee at {knee}°", clip.name);
+                }
+                for part in ["Spine", "Spine1", "Spine2", "Neck", "Head"] {
+                    let (joint, parent) = (at(part), character.joints[at(part)].parent.expect("not the root"));
+                    let angle = turn(pose, joint, parent);
+                    assert!(angle < 35.0, "{name}, {}: {part} turned by {angle}°", clip.name);
+                }
+            }
+        }
+    }
+}
+
+/// Where arms give way to the body the path must stay smooth: the steps' change shrinks with the square of their length.
+#[test]
+fn giving_way_is_smooth() {
+    let humanoid = Humanoid::new(cast("monster")).expect("a humanoid");
+    let keys = wander::keys(1);
+    let jump = |rate: f64| {
+        let pose = |frame: usize| humanoid.pose(&through(&keys, wander::PERIOD, frame as f64 / rate));
+        let hands: Vec<[DVec3; 2]> = (0..(4.0 * rate) as usize)
+            .map(pose)
+            .map(|pose| [9, 16].map(|hand: usize| pose[hand].translation))
+            .collect();
+        let change = |w: &[[DVec3; 2]]| {
+            (0..2).map(|side| (w[2][side] - 2.0 * w[1][side] + w[0][side]).length() * rate).fold(0.0, f64::max)
+        };
+        hands.windows(3).map(change).fold(0.0, f64::max)
     };
-    let vertices = || 0..character.body.positions.len();
-    let arm: Vec<usize> = vertices().filter(|&v| follows(v, &["ForeArm", "Hand"])).step_by(4).collect();
-    let trunk: Vec<usize> = vertices().filter(|&v| !follows(v, &["Arm", "Hand", "Shoulder"])).step_by(2).collect();
-    for clip in &character.clips {
-        for (frame, pose) in clip.poses.iter().enumerate().step_by(12) {
-            let body = character.pose_body(pose);
-            let nearest =
-                |&v: &usize| trunk.iter().map(|&t| body[t].distance_squared(body[v])).fold(f64::MAX, f64::min);
-            let clear = arm.iter().map(nearest).fold(f64::MAX, f64::min).sqrt();
-            assert!(clear > 0.05, "{} frame {frame}: {clear} m between forearm and trunk", clip.name);
+    let (coarse, fine) = (jump(60.0), jump(240.0));
+    assert!(fine < 0.5 * coarse + 0.01, "velocity jumps by {fine} m/s at 240 Hz, {coarse} at 60 Hz");
+}
+
+#[test]
+fn wanderings_cover_every_limit_evenly() {
+    let keys: Vec<Posture> = (0..wander::COUNT).flat_map(wander::keys).map(|(_, posture)| posture).collect();
+    let channels: [fn(&Posture) -> f64; 4] = [|p| p.arms[0][0], |p| p.arms[1][3], |p| p.spine[1], |p| p.feet[1][2]];
+    for channel in channels {
+        let (least, most) = (channel(&wander::LEAST), channel(&wander::MOST));
+        let mut levels: Vec<f64> = keys.iter().map(|key| (channel(key) - least) / (most - least)).collect();
+        levels.sort_by(f64::total_cmp);
+        for (i, level) in levels.iter().enumerate() {
+            assert!((level - (i + 1) as f64 / 37.0).abs() < 1e-9, "level {i} is {level}");
         }
     }
 }
