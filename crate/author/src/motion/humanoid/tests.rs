@@ -134,7 +134,8 @@ fn feet_stay_on_the_floor_and_the_root_near_its_place() {
         let character = cast(name);
         for clip in &character.clips {
             // How high the lowest point may be, metres: both feet leave the floor in these.
-            let most = if clip.name == "jump" { 0.40 } else { 0.06 };
+            let flights = [("jump", 0.40), ("run", 0.12), ("jog", 0.10)];
+            let most = flights.iter().find(|flight| flight.0 == clip.name).map_or(0.06, |flight| flight.1);
             for pose in clip.poses.iter().step_by(7) {
                 let low = character.pose_body(pose).iter().map(|p| p.y).fold(f64::MAX, f64::min);
                 assert!((-0.022..most).contains(&low), "{name}, {}: lowest point at {low} m", clip.name);
@@ -150,27 +151,39 @@ fn feet_stay_on_the_floor_and_the_root_near_its_place() {
 fn forearms_and_hands_keep_clear_of_the_body() {
     for name in CAST {
         let character = cast(name);
-        let follows = |v: usize, parts: &[&str]| {
-            parts.iter().any(|part| character.joints[character.weights[v][0].0].name.contains(part))
-        };
-        let vertices = || 0..character.body.positions.len();
-        let arm: Vec<usize> = vertices().filter(|&v| follows(v, &["ForeArm", "Hand"])).step_by(6).collect();
-        let body: Vec<usize> = vertices().filter(|&v| !follows(v, &["Arm", "Hand", "Shoulder"])).step_by(2).collect();
-        let normals = |posed: &[DVec3]| character.body.normals(posed);
+        let strongest = |v: u32| character.joints[character.weights[v as usize][0].0].name.as_str();
+        let is_arm = |v: &u32| ["ForeArm", "Hand"].iter().any(|part| strongest(*v).contains(part));
+        let vertices = || 0..character.body.positions.len() as u32;
+        let arm: Vec<u32> = vertices().filter(is_arm).step_by(6).collect();
+        let near_arm = |v: u32| strongest(v).contains("Arm") || strongest(v).contains("Hand");
+        let body: Vec<u32> = vertices().filter(|&v| !near_arm(v) && !strongest(v).contains("Shoulder")).collect();
+        let solid: Vec<[u32; 3]> =
+            character.body.triangles.iter().copied().filter(|t| !t.iter().any(|&v| near_arm(v))).collect();
+        let height = character.body.positions.iter().map(|p| p.y).fold(0.0, f64::max);
         for clip in &character.clips {
             for (frame, pose) in clip.poses.iter().enumerate().step_by(25) {
                 let posed = character.pose_body(pose);
-                let normal = normals(&posed);
-                for &v in &arm {
-                    let square = |t: &&usize| posed[**t].distance_squared(posed[v]);
-                    let nearest = *body.iter().min_by(|a, b| square(a).total_cmp(&square(b))).expect("a body");
-                    let way = posed[v] - posed[nearest];
-                    let clear = if way.dot(normal[nearest]) < 0.0 { -way.length() } else { way.length() };
-                    assert!(clear > 0.004, "{name}, {} frame {frame}: an arm is {clear} m from the body", clip.name);
+                let at = |v: u32| posed[v as usize];
+                let square = |v: u32| body.iter().map(|&b| at(b).distance_squared(at(v))).fold(f64::MAX, f64::min);
+                let clear = arm.iter().map(|&v| square(v)).fold(f64::MAX, f64::min).sqrt();
+                assert!(clear > 0.008 * height, "{name}, {} frame {frame}: {clear} m between arm and body", clip.name);
+                for &v in arm.iter().step_by(24) {
+                    let inside = winding(at(v), &posed, &solid);
+                    assert!(inside < 0.5, "{name}, {} frame {frame}: vertex {v} is in the body", clip.name);
                 }
             }
         }
     }
+}
+
+/// How often a surface surrounds a point: 1 inside, 0 outside. Van Oosterom & Strackee 1983.
+fn winding(point: DVec3, positions: &[DVec3], triangles: &[[u32; 3]]) -> f64 {
+    let angle = |triangle: &[u32; 3]| {
+        let [a, b, c] = triangle.map(|v| positions[v as usize] - point);
+        let (x, y, z) = (a.length(), b.length(), c.length());
+        2.0 * a.dot(b.cross(c)).atan2(x * y * z + a.dot(b) * z + b.dot(c) * x + c.dot(a) * y)
+    };
+    triangles.iter().map(angle).sum::<f64>() / (4.0 * std::f64::consts::PI)
 }
 
 #[test]
