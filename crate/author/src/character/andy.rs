@@ -19,7 +19,7 @@ const WRIST: [f64; 3] = [0.5937, 1.0737, -0.018];
 const SKIN: [f32; 3] = [0.58, 0.34, 0.23];
 const HAIR: [f32; 3] = [0.045, 0.028, 0.018];
 const LIP: [f32; 3] = [0.46, 0.21, 0.15];
-const EYE: [f32; 3] = [0.72, 0.70, 0.66];
+const EYE: [f32; 3] = [0.55, 0.52, 0.48];
 const IRIS: [f32; 3] = [0.045, 0.022, 0.012];
 const BRIEFS: [f32; 3] = [0.06, 0.075, 0.10];
 
@@ -189,7 +189,7 @@ const PARTS: &[Part] = &[
         .on(HEAD),
     // Eyes: ball and iris.
     Part::ball([0.0320, 1.6915, 0.0740], [0.0142, 0.0128, 0.0128]).shell(3).coloured(EYE).blend(0.001, 0.005).on(HEAD),
-    Part::ball([0.0316, 1.6913, 0.0848], [0.0060, 0.0028, 0.0060]).shell(4).coloured(IRIS).blend(0.001, 0.003).on(HEAD),
+    Part::ball([0.0316, 1.6915, 0.0846], [0.0068, 0.0030, 0.0068]).shell(4).coloured(IRIS).blend(0.001, 0.003).on(HEAD),
 ];
 
 /// A finger that leaves the palm `at` metres beyond the wrist at depth `z` and spreads forward; radius and length.

@@ -139,7 +139,7 @@ const PARTS: &[Part] = &[
         .coloured(HAIR)
         .blend(0.02, 0.014)
         .on(HEAD),
-    Part::ball([0.078, 1.166, 0.160], [0.009, 0.012, 0.032])
+    Part::ball([0.078, 1.166, 0.154], [0.009, 0.012, 0.032])
         .along([1.0, -0.10, -0.34], FRONT)
         .shell(4)
         .coloured(HAIR)
