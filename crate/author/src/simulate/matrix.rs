@@ -1,7 +1,7 @@
 //! Symmetric block-sparse matrix with 3×3 blocks and its sparse Cholesky factorisation (faer, AMD ordering).
-//! Body contact, friction and pins only touch diagonal blocks, so one symbolic analysis serves a garment for good.
+//! Body contact, friction and pins only touch diagonal blocks, so one symbolic analysis serves until cloth meets cloth.
 
-use std::collections::BTreeSet;
+use std::sync::Arc;
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::LltRegularization;
@@ -38,13 +38,16 @@ pub(super) struct Pattern {
 impl Pattern {
     /// Pattern of `n` block rows in which the vertices of every clique couple.
     pub fn new<'a>(n: usize, cliques: impl Iterator<Item = &'a [usize]>) -> Result<Self> {
-        let mut sets: Vec<BTreeSet<usize>> = (0..n).map(|i| BTreeSet::from([i])).collect();
+        let mut blocks: Vec<Vec<usize>> = (0..n).map(|i| vec![i]).collect();
         for clique in cliques {
             for &column in clique {
-                sets[column].extend(clique.iter().filter(|&&row| row > column));
+                blocks[column].extend(clique.iter().filter(|&&row| row > column));
             }
         }
-        let blocks: Vec<Vec<usize>> = sets.into_iter().map(|set| set.into_iter().collect()).collect();
+        for column in &mut blocks {
+            column.sort_unstable();
+            column.dedup();
+        }
         let (mut columns, mut rows) = (vec![0], Vec::new());
         for column in &blocks {
             for v in 0..3 {
@@ -67,6 +70,12 @@ impl Pattern {
         Address { start: (self.columns[3 * column] + 3 * place) as u32, stride: 3 * blocks.len() as u32 }
     }
 
+    /// Whether all vertices of a group couple.
+    pub fn holds(&self, group: &[usize]) -> bool {
+        let couple = |&i: &usize, &j: &usize| self.blocks[i.min(j)].binary_search(&i.max(j)).is_ok();
+        group.iter().all(|i| group.iter().all(|j| couple(i, j)))
+    }
+
     /// Number of stored values.
     pub fn len(&self) -> usize {
         self.rows.len()
@@ -74,24 +83,24 @@ impl Pattern {
 }
 
 /// Numeric values of a matrix with a [`Pattern`], its factor and the memory to compute it.
-pub(super) struct Matrix<'a> {
-    pattern: &'a Pattern,
+pub(super) struct Matrix {
+    pattern: Arc<Pattern>,
     values: Vec<f64>,
     factor: Vec<f64>,
     factor_scratch: MemBuffer,
     solve_scratch: MemBuffer,
 }
 
-impl<'a> Matrix<'a> {
+impl Matrix {
     /// The zero matrix.
-    pub fn new(pattern: &'a Pattern) -> Self {
+    pub fn new(pattern: Arc<Pattern>) -> Self {
         let symbolic = &pattern.symbolic;
         Self {
-            pattern,
             values: vec![0.0; pattern.len()],
             factor: vec![0.0; symbolic.len_val()],
             factor_scratch: MemBuffer::new(symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default())),
             solve_scratch: MemBuffer::new(symbolic.solve_in_place_scratch::<f64>(1, Par::Seq)),
+            pattern,
         }
     }
 
@@ -114,7 +123,7 @@ impl<'a> Matrix<'a> {
 
     /// Factorises the values; false when the matrix is not positive definite.
     pub fn factorise(&mut self) -> bool {
-        let Pattern { columns, rows, symbolic, .. } = self.pattern;
+        let Pattern { columns, rows, symbolic, .. } = &*self.pattern;
         let size = columns.len() - 1;
         let structure = SymbolicSparseColMatRef::new_checked(size, size, columns, None, rows);
         let matrix = SparseColMatRef::new(structure, self.values.as_slice());

@@ -1,16 +1,25 @@
-//! Saint Venant–Kirchhoff membrane: `A ψ(F)`, `ψ = μ|G|² + λ/2 tr(G)²`, `G = (FᵀF - I)/2`. simulation.md §2.2.
-//! The Hessian is `BᵀCB` plus the geometric part; with the stress clamped to tension it is never indefinite.
+//! Orthotropic Saint Venant–Kirchhoff membrane: `A ψ(F)`, `ψ = ½ G:C:G`, `G = (FᵀF - I)/2` along weft (1) and warp (2).
+//! simulation.md §2.2. The Hessian is `BᵀCB` plus the geometric part; with the stress clamped to tension it is never indefinite.
 
 use glam::{DMat3, DVec2, DVec3};
 
 use super::matrix::outer;
+
+/// In-plane stiffness along the threads, N/m: `S₁₁ = C₁₁G₁₁ + C₁₂G₂₂`, `S₂₂ = C₁₂G₁₁ + C₂₂G₂₂`, `S₁₂ = 2 C₃₃G₁₂`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Membrane {
+    pub c11: f64,
+    pub c22: f64,
+    pub c12: f64,
+    pub c33: f64,
+}
 
 /// A membrane triangle at rest.
 #[derive(Clone, Debug)]
 pub(super) struct Triangle {
     /// Cloth vertices.
     pub vertices: [usize; 3],
-    /// Gradients of the three shape functions in rest coordinates, 1/m.
+    /// Gradients of the three shape functions along weft and warp, 1/m.
     pub gradients: [DVec2; 3],
     /// Rest area, m².
     pub area: f64,
@@ -25,8 +34,9 @@ struct Strain {
 }
 
 impl Triangle {
-    /// From the rest positions of its corners; `None` when the triangle has no area to speak of.
-    pub fn new(vertices: [usize; 3], [a, b, c]: [DVec3; 3]) -> Option<Self> {
+    /// From the rest positions of its corners and the direction of the warp, which need not lie in its plane; `None` when the
+    /// triangle has no area to speak of.
+    pub fn new(vertices: [usize; 3], [a, b, c]: [DVec3; 3], warp: DVec3) -> Option<Self> {
         let (e1, e2) = (b - a, c - a);
         let normal = e1.cross(e2);
         let area = 0.5 * normal.length();
@@ -34,10 +44,13 @@ impl Triangle {
         if !area.is_finite() || area <= 1e-4 * longest {
             return None;
         }
-        let u = e1.normalize();
-        let v = normal.normalize().cross(u);
-        let (p, q) = (DVec2::new(e1.dot(u), 0.0), DVec2::new(e2.dot(u), e2.dot(v)));
-        let determinant = p.x * q.y;
+        let normal = normal.normalize();
+        let along = warp.reject_from_normalized(normal);
+        // A triangle across the warp has no direction of it.
+        let v = if along.length_squared() > 1e-6 { along.normalize() } else { e1.normalize() };
+        let u = v.cross(normal);
+        let (p, q) = (DVec2::new(e1.dot(u), e1.dot(v)), DVec2::new(e2.dot(u), e2.dot(v)));
+        let determinant = p.perp_dot(q);
         let g1 = DVec2::new(q.y, -q.x) / determinant;
         let g2 = DVec2::new(-p.y, p.x) / determinant;
         Some(Self { vertices, gradients: [-(g1 + g2), g1, g2], area })
@@ -59,40 +72,39 @@ impl Triangle {
         [(mean + radius).sqrt(), (mean - radius).max(0.0).sqrt()]
     }
 
-    fn strain(&self, (mu, lambda): (f64, f64), x: &[DVec3]) -> Strain {
+    fn strain(&self, membrane: &Membrane, x: &[DVec3]) -> Strain {
+        let Membrane { c11, c22, c12, c33 } = *membrane;
         let columns @ [f1, f2] = self.deformation(x);
         let (g11, g22, g12) = (0.5 * (f1.length_squared() - 1.0), 0.5 * (f2.length_squared() - 1.0), 0.5 * f1.dot(f2));
-        let trace = g11 + g22;
-        let energy = self.area * (mu * (g11 * g11 + g22 * g22 + 2.0 * g12 * g12) + 0.5 * lambda * trace * trace);
-        let stress = [2.0 * mu * g11 + lambda * trace, 2.0 * mu * g22 + lambda * trace, 2.0 * mu * g12];
+        let stress = [c11 * g11 + c12 * g22, c12 * g11 + c22 * g22, 2.0 * c33 * g12];
+        let energy = self.area * (0.5 * (stress[0] * g11 + stress[1] * g22) + stress[2] * g12);
         Strain { columns, stress, energy }
     }
 
     /// Energy in joules.
-    pub fn energy(&self, lame: (f64, f64), x: &[DVec3]) -> f64 {
-        self.strain(lame, x).energy
+    pub fn energy(&self, membrane: &Membrane, x: &[DVec3]) -> f64 {
+        self.strain(membrane, x).energy
     }
 
     /// Gradient per corner in newtons, and the Hessian through `block(a, b, H_ab)` for the pairs `a >= b`: exact, or
     /// with compression left out.
     pub fn derivatives(
         &self,
-        lame: (f64, f64),
+        membrane: &Membrane,
         x: &[DVec3],
         exact: bool,
         mut block: impl FnMut(usize, usize, DMat3),
     ) -> [DVec3; 3] {
-        let Strain { columns: [f1, f2], stress: [s11, s22, s12], .. } = self.strain(lame, x);
+        let Strain { columns: [f1, f2], stress: [s11, s22, s12], .. } = self.strain(membrane, x);
         let (p1, p2) = ((f1 * s11 + f2 * s12) * self.area, (f1 * s12 + f2 * s22) * self.area);
-        let (mu, lambda) = lame;
-        let [c11, c22, c12] = if exact { [s11, s22, s12] } else { tension([s11, s22, s12]) };
-        let stiff = 2.0 * mu + lambda;
+        let Membrane { c11, c22, c12, c33 } = *membrane;
+        let [t11, t22, t12] = if exact { [s11, s22, s12] } else { tension([s11, s22, s12]) };
         let g = self.gradients;
         let b = g.map(|g| [f1 * g.x, f2 * g.y, f1 * g.y + f2 * g.x]);
         for i in 0..3 {
             for j in 0..=i {
-                let geometric = g[i].x * (c11 * g[j].x + c12 * g[j].y) + g[i].y * (c12 * g[j].x + c22 * g[j].y);
-                let c = [b[j][0] * stiff + b[j][1] * lambda, b[j][0] * lambda + b[j][1] * stiff, b[j][2] * mu];
+                let geometric = g[i].x * (t11 * g[j].x + t12 * g[j].y) + g[i].y * (t12 * g[j].x + t22 * g[j].y);
+                let c = [b[j][0] * c11 + b[j][1] * c12, b[j][0] * c12 + b[j][1] * c22, b[j][2] * c33];
                 let material = outer(b[i][0], c[0]) + outer(b[i][1], c[1]) + outer(b[i][2], c[2]);
                 block(i, j, (material + DMat3::from_diagonal(DVec3::splat(geometric))) * self.area);
             }

@@ -1,18 +1,23 @@
 //! Proximal Newton: `min Φ(x + δ) + Σ m_i |δ_i|² / 2h²`, one factorisation per iteration, `h` growing as steps succeed,
 //! so that the end is pure statics. Contacts are planes within an iteration and found anew for the next one.
 
+mod assembly;
 mod descent;
 mod detection;
+mod layout;
 
-use glam::{DMat3, DVec3};
+use std::sync::Arc;
 
+use glam::DVec3;
+
+pub(super) use self::layout::Layout;
 use super::cloth::Cloth;
 use super::contact::{Contact, Pin};
-use super::material::GRAVITY;
-use super::matrix::{Address, Matrix, Pattern};
+use super::matrix::Matrix;
+use super::neighbourhood::Neighbourhood;
 use super::posed::PosedBody;
+use super::proximity::Pair;
 use super::settings::Settings;
-use crate::Result;
 
 /// Proximal time step at the start of a relaxation and at most, seconds; growth after a full Newton step.
 const FIRST_TIME_STEP: f64 = 0.05;
@@ -21,39 +26,6 @@ const GROWTH: f64 = 1.6;
 /// Time step in seconds above which the Hessian is exact. Near rest that converges quadratically; before, the exact
 /// one is indefinite more often than not.
 const EXACT_ABOVE: f64 = 10.0;
-
-/// Hessian layout of a cloth: the pattern and where each element's blocks lie.
-pub(super) struct Layout {
-    pattern: Pattern,
-    triangles: Vec<[Address; 6]>,
-    hinges: Vec<[Address; 10]>,
-    diagonal: Vec<Address>,
-}
-
-/// Place of the pair `a >= b` in a packed lower triangle.
-fn packed(a: usize, b: usize) -> usize {
-    a * (a + 1) / 2 + b
-}
-
-impl Layout {
-    /// Analyses the cloth's coupling once.
-    pub fn new(cloth: &Cloth) -> Result<Self> {
-        let pattern = Pattern::new(cloth.masses.len(), cloth.cliques())?;
-        fn addresses<const P: usize>(pattern: &Pattern, vertices: &[usize]) -> [Address; P] {
-            let mut list = [pattern.address(0, 0); P];
-            for a in 0..vertices.len() {
-                for b in 0..=a {
-                    list[packed(a, b)] = pattern.address(vertices[a], vertices[b]);
-                }
-            }
-            list
-        }
-        let triangles = cloth.triangles.iter().map(|t| addresses(&pattern, &t.vertices)).collect();
-        let hinges = cloth.hinges.iter().map(|h| addresses(&pattern, &h.vertices)).collect();
-        let diagonal = (0..cloth.masses.len()).map(|i| pattern.address(i, i)).collect();
-        Ok(Self { pattern, triangles, hinges, diagonal })
-    }
-}
 
 /// One vertex in this many may stay restless: in a crease of the body the closest point jumps from side to side, and the few
 /// vertices there keep a whole cloth, at rest everywhere else, from ever counting as converged (300 iterations did not help).
@@ -81,9 +53,13 @@ pub(super) struct Probe {
 /// A cloth on its way to equilibrium.
 pub(super) struct Solver<'a> {
     cloth: &'a Cloth,
-    layout: &'a Layout,
     settings: &'a Settings,
-    matrix: Matrix<'a>,
+    layout: Arc<Layout>,
+    matrix: Matrix,
+    /// Cloth that may meet cloth.
+    neighbourhood: Neighbourhood,
+    /// Pairs of elements within the barrier.
+    pub touching: usize,
     /// Vertex positions, metres [n].
     pub positions: Vec<DVec3>,
     /// Friction anchors, metres [n].
@@ -116,13 +92,15 @@ pub(super) struct Solver<'a> {
 
 impl<'a> Solver<'a> {
     /// Starts from `positions`, at rest, in friction contact without slip.
-    pub fn new(cloth: &'a Cloth, layout: &'a Layout, settings: &'a Settings, positions: Vec<DVec3>) -> Self {
+    pub fn new(cloth: &'a Cloth, layout: &Arc<Layout>, settings: &'a Settings, positions: Vec<DVec3>) -> Self {
         let n = positions.len();
         Self {
             cloth,
-            layout,
             settings,
-            matrix: Matrix::new(&layout.pattern),
+            layout: layout.clone(),
+            matrix: Matrix::new(layout.pattern.clone()),
+            neighbourhood: Neighbourhood::new(&cloth.elements),
+            touching: 0,
             anchors: positions.clone(),
             positions,
             tracked: vec![None; n],
@@ -157,6 +135,12 @@ impl<'a> Solver<'a> {
         let square: f64 = squares[..calm].iter().sum();
         let residual = (square / calm as f64).sqrt() / self.cloth.mean_weight();
         Probe { residual, least_distance, inside: self.inside, drift: f64::INFINITY }
+    }
+
+    /// Least distance of cloth from cloth among the pairs that are near, metres.
+    pub fn nearest_layers(&self) -> f64 {
+        let distance = |pair: &Pair| pair.distance(&self.positions);
+        self.neighbourhood.pairs.iter().map(distance).fold(f64::INFINITY, f64::min)
     }
 
     /// Takes the step that the last [`probe`](Self::probe) prepared; the share of the Newton step taken, 0 when the
@@ -195,71 +179,5 @@ impl<'a> Solver<'a> {
             }
         }
         Probe { drift, ..self.probe(body, h) }
-    }
-
-    /// Static gradient, and the Hessian of the proximal problem.
-    fn assemble(&mut self, h: f64) {
-        let Self { cloth, layout, matrix, positions: x, gradient, exact, .. } = self;
-        matrix.clear();
-        gradient.fill(DVec3::ZERO);
-        for (triangle, addresses) in cloth.triangles.iter().zip(&layout.triangles) {
-            let v = triangle.vertices;
-            let forces = triangle.derivatives(cloth.lame, x, *exact, |a, b, block| {
-                let ordered = if v[a] < v[b] { block.transpose() } else { block };
-                matrix.add(addresses[packed(a, b)], ordered, a == b);
-            });
-            (0..3).for_each(|a| gradient[v[a]] += forces[a]);
-        }
-        for (hinge, addresses) in cloth.hinges.iter().zip(&layout.hinges) {
-            let v = hinge.vertices;
-            let forces = hinge.derivatives(x, *exact, |a, b, block| {
-                let ordered = if v[a] < v[b] { block.transpose() } else { block };
-                matrix.add(addresses[packed(a, b)], ordered, a == b);
-            });
-            (0..4).for_each(|a| gradient[v[a]] += forces[a]);
-        }
-        for i in 0..x.len() {
-            let mass = cloth.masses[i];
-            gradient[i].y += mass * GRAVITY;
-            matrix.add(layout.diagonal[i], DMat3::from_diagonal(DVec3::splat(mass / (h * h))), true);
-        }
-        for contact in &self.contacts {
-            let (force, stiffness) = contact.derivatives(x[contact.vertex]);
-            gradient[contact.vertex] += force;
-            matrix.add(layout.diagonal[contact.vertex], stiffness, true);
-        }
-        for pin in &self.pins {
-            let (force, stiffness) = pin.derivatives(x[pin.vertex]);
-            gradient[pin.vertex] += force;
-            matrix.add(layout.diagonal[pin.vertex], stiffness, true);
-        }
-    }
-
-    /// Potential energy at `x`, contacts frozen, joules.
-    pub fn energy(&self, x: &[DVec3]) -> f64 {
-        let cloth = self.cloth;
-        let membrane: f64 = cloth.triangles.iter().map(|t| t.energy(cloth.lame, x)).sum();
-        let bending: f64 = cloth.hinges.iter().map(|h| h.energy(x)).sum();
-        let weight: f64 = cloth.masses.iter().zip(x).map(|(m, x)| m * GRAVITY * x.y).sum();
-        let contact: f64 = self.contacts.iter().map(|contact| contact.energy(x[contact.vertex])).sum();
-        let pins: f64 = self.pins.iter().map(|pin| pin.energy(x[pin.vertex])).sum();
-        membrane + bending + weight + contact + pins
-    }
-
-    /// Static gradient at `x`, contacts frozen, newtons [n].
-    fn gradient(&self, x: &[DVec3]) -> Vec<DVec3> {
-        let cloth = self.cloth;
-        let mut gradient: Vec<DVec3> = cloth.masses.iter().map(|m| DVec3::Y * (m * GRAVITY)).collect();
-        for triangle in &cloth.triangles {
-            let forces = triangle.derivatives(cloth.lame, x, false, |_, _, _| {});
-            (0..3).for_each(|a| gradient[triangle.vertices[a]] += forces[a]);
-        }
-        for hinge in &cloth.hinges {
-            let forces = hinge.derivatives(x, false, |_, _, _| {});
-            (0..4).for_each(|a| gradient[hinge.vertices[a]] += forces[a]);
-        }
-        self.contacts.iter().for_each(|contact| gradient[contact.vertex] += contact.derivatives(x[contact.vertex]).0);
-        self.pins.iter().for_each(|pin| gradient[pin.vertex] += pin.derivatives(x[pin.vertex]).0);
-        gradient
     }
 }

@@ -8,6 +8,7 @@ use parry3d_f64::partitioning::{Bvh, BvhNode};
 
 use super::burial::winding;
 use super::collider::{Collider, bounds};
+use super::proximity::closest_on_triangle;
 
 /// How far behind a face a point may lie and still be pushed out through it, metres.
 const DEPTH: f64 = 0.05;
@@ -182,43 +183,4 @@ struct Spot {
     point: DVec3,
     barycentric: [f64; 3],
     normal: DVec3,
-}
-
-/// Barycentric coordinates of the closest point; exact zeros on edges and corners (Ericson, Real-Time Collision
-/// Detection §5.1.5).
-fn closest_on_triangle(p: DVec3, [a, b, c]: [DVec3; 3]) -> [f64; 3] {
-    let (ab, ac) = (b - a, c - a);
-    let ap = p - a;
-    let (d1, d2) = (ab.dot(ap), ac.dot(ap));
-    if d1 <= 0.0 && d2 <= 0.0 {
-        return [1.0, 0.0, 0.0];
-    }
-    let bp = p - b;
-    let (d3, d4) = (ab.dot(bp), ac.dot(bp));
-    if d3 >= 0.0 && d4 <= d3 {
-        return [0.0, 1.0, 0.0];
-    }
-    let vc = d1 * d4 - d3 * d2;
-    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
-        let v = d1 / (d1 - d3);
-        return [1.0 - v, v, 0.0];
-    }
-    let cp = p - c;
-    let (d5, d6) = (ab.dot(cp), ac.dot(cp));
-    if d6 >= 0.0 && d5 <= d6 {
-        return [0.0, 0.0, 1.0];
-    }
-    let vb = d5 * d2 - d1 * d6;
-    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
-        let w = d2 / (d2 - d6);
-        return [1.0 - w, 0.0, w];
-    }
-    let va = d3 * d6 - d5 * d4;
-    if va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0 {
-        let w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-        return [0.0, 1.0 - w, w];
-    }
-    let scale = 1.0 / (va + vb + vc);
-    let (v, w) = (vb * scale, vc * scale);
-    [1.0 - v - w, v, w]
 }

@@ -1,11 +1,14 @@
 //! Canonical drape and poses: transport along the fixed path, then relaxation to static equilibrium.
 //! A pose depends on nothing but itself; poses may run in parallel and come out bit for bit the same.
 
+use std::sync::Arc;
+
 use glam::{DAffine3, DVec3};
 
 use super::cloth::Cloth;
 use super::collider::{Collider, blend};
 use super::contact::Pin;
+use super::grain::warp;
 use super::hull::hull;
 use super::material::Material;
 use super::newton::{Layout, Probe, Solver};
@@ -22,7 +25,7 @@ pub struct Simulator {
     character: Character,
     rest: Vec<DVec3>,
     pub(super) cloth: Cloth,
-    layout: Layout,
+    layout: Arc<Layout>,
     collider: Collider,
     adjacency: Vec<Vec<u32>>,
     /// Skin of each attached vertex: that of the closest body point.
@@ -35,9 +38,9 @@ impl Simulator {
     pub fn new(character: &Character, garment: &Garment, material: Material, settings: Settings) -> Result<Self> {
         let rest = garment.mesh.positions.clone();
         settings.check(rest.len())?;
-        let cloth = Cloth::new(&garment.mesh, &material, settings.shape)?;
+        let cloth = Cloth::new(&garment.mesh, &warp(garment), &material, settings.shape)?;
         let collider = Collider::new(&hull(character, &garment.mesh)?, &garment.mesh, settings.reach)?;
-        let layout = Layout::new(&cloth)?;
+        let layout = Arc::new(Layout::new(&cloth, &[])?);
         let attached = attach(&collider, &rest, &settings.attached);
         let adjacency = adjacency(&cloth);
         let character = Character { clips: Vec::new(), surface: Surface::default(), ..character.clone() };
@@ -111,6 +114,10 @@ impl Simulator {
         if relaxed.inside as f64 > caught * solver.positions.len() as f64 {
             let (found, depth) = (relaxed.inside, -1e3 * relaxed.least_distance);
             return reject(format!("wanted no vertex inside the body, found {found}, {depth:.2} mm deep"));
+        }
+        let crossings = self.cloth.elements.crossings(&solver.positions).len();
+        if crossings > 0 {
+            return reject(format!("wanted no cloth through cloth, found {crossings} pairs of triangles that cross"));
         }
         let (_, largest) = stretch(&self.cloth, &solver.positions);
         if largest > self.settings.stretch_limit {

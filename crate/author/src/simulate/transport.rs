@@ -1,5 +1,6 @@
 //! Carries cloth along when the body takes a step: near the body by the blended rigid motion of the closest point,
-//! weight `exp(-(d - d̂) / 4 cm)`, elsewhere by what the neighbours do. Without it every step is pushed by contact.
+//! weight `exp(-(d - d̂) / 4 cm)`, elsewhere by what the neighbours do, until cloth meets cloth. Without it every step is
+//! pushed by contact.
 
 use glam::{DAffine3, DVec3};
 
@@ -56,8 +57,8 @@ pub(super) fn transport(solver: &mut Solver, body: &PosedBody, motion: &[DAffine
             shift[i] = (target[i] * hold[i] + mean * SMOOTHING) / (hold[i] + SMOOTHING);
         }
     }
+    solver.carry(&shift);
     for i in 0..n {
-        solver.positions[i] += shift[i];
         solver.anchors[i] = solver.positions[i] + lag[i];
     }
     solver.moved();

@@ -28,19 +28,40 @@ impl Solver<'_> {
         if !longest.is_finite() || !slope.is_finite() {
             return 0.0;
         }
+        let scale = (LONGEST_MOVE / longest.max(1e-30)).min(1.0);
+        let motion: Vec<DVec3> = step.iter().map(|d| *d * scale).collect();
+        self.look_ahead(&motion);
         let start = self.energy(&self.positions);
-        let mut share = (LONGEST_MOVE / longest.max(1e-30)).min(1.0);
+        let mut share = self.neighbourhood.clear_way(&self.positions, &motion);
         for _ in 0..12 {
-            let mut trial: Vec<DVec3> = self.positions.iter().zip(&step).map(|(x, d)| *x + *d * share).collect();
-            let wanted = start + 1e-4 * share * slope + 1e-13 * start.abs();
-            let energy = self.correct(&mut trial, h);
+            let mut trial: Vec<DVec3> = self.positions.iter().zip(&motion).map(|(x, d)| *x + *d * share).collect();
+            let wanted = start + 1e-4 * share * scale * slope + 1e-13 * start.abs();
+            let energy = self.correct(&mut trial, share, h);
             if energy <= wanted {
+                self.neighbourhood.follow(share);
                 self.accept(trial);
-                return share;
+                return share * scale;
             }
             share *= 0.5;
         }
         0.0
+    }
+
+    /// Makes sure that the neighbourhood knows every pair of elements that `motion` [n] can bring together.
+    pub(super) fn look_ahead(&mut self, motion: &[DVec3]) {
+        let end: Vec<DVec3> = self.positions.iter().zip(motion).map(|(x, d)| *x + *d).collect();
+        if !self.neighbourhood.covers(&self.positions, 0.0) || !self.neighbourhood.covers(&end, 0.0) {
+            self.neighbourhood.search(&self.cloth.elements, &self.positions, motion, self.cloth.gap);
+        }
+    }
+
+    /// Moves the cloth by `motion` [n] as far as it does not run into itself; the share made.
+    pub fn carry(&mut self, motion: &[DVec3]) -> f64 {
+        self.look_ahead(motion);
+        let share = self.neighbourhood.clear_way(&self.positions, motion);
+        self.positions.iter_mut().zip(motion).for_each(|(x, d)| *x += *d * share);
+        self.neighbourhood.follow(share);
+        share
     }
 
     /// `Σ m |x - x₀|² / 2h²`.
@@ -52,7 +73,7 @@ impl Solver<'_> {
     /// Improves `trial` by steps with the old factor while they lower the energy; the energy reached. They take back
     /// the stretch, second order in the step, that a long step along a soft direction of nearly inextensible cloth
     /// leaves behind. Without them the same rest took 2.8 times the iterations.
-    fn correct(&mut self, trial: &mut Vec<DVec3>, h: f64) -> f64 {
+    fn correct(&mut self, trial: &mut Vec<DVec3>, share: f64, h: f64) -> f64 {
         let mut energy = self.energy(trial) + self.inertia(trial, h);
         for _ in 0..CORRECTIONS {
             let mut gradient = self.gradient(trial);
@@ -61,6 +82,10 @@ impl Solver<'_> {
             }
             let step = self.matrix.step(&gradient);
             let better: Vec<DVec3> = trial.iter().zip(&step).map(|(x, d)| *x + *d).collect();
+            let covered = self.neighbourhood.covers(&better, share);
+            if !covered || self.neighbourhood.clear_way(trial, &step) < 1.0 {
+                break;
+            }
             let lower = self.energy(&better) + self.inertia(&better, h);
             if lower.is_nan() || lower >= energy {
                 break;

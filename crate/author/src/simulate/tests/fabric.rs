@@ -1,8 +1,10 @@
 //! Cantilever (heavy elastica), catenary and tension against their exact solutions. simulation.md §3.1–3.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
-use super::scene::strip;
+use super::scene::{down, strip};
 use crate::rig::Mesh;
 use crate::simulate::cloth::Cloth;
 use crate::simulate::contact::Pin;
@@ -13,7 +15,7 @@ use crate::simulate::settings::Settings;
 /// Relaxes `start` with the vertices in `held` pinned where they are.
 fn hang(cloth: &Cloth, start: &[DVec3], held: impl Fn(usize) -> bool) -> Vec<DVec3> {
     let settings = Settings { residual: 1e-4, ..Settings::default() };
-    let layout = Layout::new(cloth).unwrap();
+    let layout = Arc::new(Layout::new(cloth, &[]).unwrap());
     let mut solver = Solver::new(cloth, &layout, &settings, start.to_vec());
     let pin = |vertex: usize| Pin { vertex, target: start[vertex], stiffness: 1e5 };
     solver.pins = (0..start.len()).filter(|&i| held(i)).map(pin).collect();
@@ -28,8 +30,8 @@ fn tip_drop(beta: f64, elements: usize) -> f64 {
     let edge = length / elements as f64;
     let mesh = strip(elements + 1, (0.3 * elements as f64).round() as usize, edge);
     let bending = density * GRAVITY * length.powi(3) / beta;
-    let material = Material { density, bending, stretch: 20_000.0, poisson: 0.3, friction: 0.0 };
-    let cloth = Cloth::new(&mesh, &material, 0.0).unwrap();
+    let material = Material { friction: 0.0, ..Material::isotropic(density, 20_000.0, 0.3, bending) };
+    let cloth = Cloth::new(&mesh, &down(&mesh), &material, 0.0).unwrap();
     // Two columns are clamped, so that the slope vanishes at x = edge.
     let clamp = edge;
     let x = hang(&cloth, &mesh.positions, |i| mesh.positions[i].x <= 1.51 * edge);
@@ -52,8 +54,8 @@ fn rope_of_cloth_hangs_in_a_catenary() {
     for (span, wanted) in [(0.8, 0.2654), (0.6, 0.3628)] {
         let columns = 60;
         let mesh = straight(columns, 2, 1.0 / columns as f64);
-        let material = Material { stretch: 20_000.0, bending: 1e-9, poisson: 0.0, ..Material::default() };
-        let cloth = Cloth::new(&mesh, &material, 0.0).unwrap();
+        let material = Material::isotropic(0.2, 20_000.0, 0.0, 1e-9);
+        let cloth = Cloth::new(&mesh, &down(&mesh), &material, 0.0).unwrap();
         let bow = |p: &DVec3| DVec3::new(p.x * span, -4.0 * wanted * p.x * (1.0 - p.x), p.z);
         let start: Vec<DVec3> = mesh.positions.iter().map(bow).collect();
         let end = |i: usize| mesh.positions[i].x < 1e-9 || mesh.positions[i].x > 1.0 - 1e-9;
@@ -85,7 +87,7 @@ fn tension_stretches_by_the_membrane_law() {
     let length = columns as f64 * edge;
     for (pull, wanted) in [(5.0, 0.004963), (20.0, 0.019430), (50.0, 0.046681)] {
         let material = Material { density: 1e-3, ..Material::default() };
-        let mut cloth = Cloth::new(&mesh, &material, 0.0).unwrap();
+        let mut cloth = Cloth::new(&mesh, &down(&mesh), &material, 0.0).unwrap();
         for row in 0..=rows {
             let share = if row == 0 || row == rows { 0.5 } else { 1.0 };
             cloth.masses[row * (columns + 1) + columns] += pull * width * share / rows as f64 / GRAVITY;
@@ -106,8 +108,8 @@ fn own_weight_stretches_a_hanging_strip() {
     let (columns, rows) = (50, 4);
     let mut mesh = straight(columns, rows, 0.02);
     mesh.positions.iter_mut().for_each(|p| *p = DVec3::new(p.z, -p.x, 0.0));
-    let material = Material { poisson: 0.0, ..Material::default() };
-    let cloth = Cloth::new(&mesh, &material, 0.0).unwrap();
+    let material = Material::isotropic(0.2, 1000.0, 0.0, 6e-5);
+    let cloth = Cloth::new(&mesh, &down(&mesh), &material, 0.0).unwrap();
     let x = hang(&cloth, &mesh.positions, |i| i % (columns + 1) == 0);
     let tip = -x.iter().map(|p| p.y).fold(0.0, f64::min) - 1.0;
     eprintln!("self weight: tip {:.4} mm, exact 0.981", 1e3 * tip);

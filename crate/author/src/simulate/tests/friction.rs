@@ -1,8 +1,10 @@
 //! A patch of cloth on an inclined plane: sticks below `atan μ`, without creep, and slides above. simulation.md §3.4.
 
+use std::sync::Arc;
+
 use glam::{DMat3, DVec3};
 
-use super::scene::{rigid, strip};
+use super::scene::{down, rigid, strip};
 use crate::rig::Mesh;
 use crate::simulate::cloth::Cloth;
 use crate::simulate::collider::Collider;
@@ -20,8 +22,8 @@ fn slide(degrees: f64, iterations: usize) -> f64 {
     mesh.positions.iter_mut().for_each(|p| *p = turn * (*p + DVec3::Y * 0.0039));
     let material = Material { friction: 0.3, ..Material::default() };
     let settings = Settings { reach: 10.0, ..Settings::default() };
-    let cloth = Cloth::new(&mesh, &material, 0.0).unwrap();
-    let layout = Layout::new(&cloth).unwrap();
+    let cloth = Cloth::new(&mesh, &down(&mesh), &material, 0.0).unwrap();
+    let layout = Arc::new(Layout::new(&cloth, &[]).unwrap());
     let collider = Collider::new(&plane, &mesh, settings.reach).unwrap();
     let body = collider.pose(&[glam::DAffine3::IDENTITY]);
     let mut solver = Solver::new(&cloth, &layout, &settings, mesh.positions.clone());

@@ -3,6 +3,7 @@
 mod energy;
 mod fabric;
 mod friction;
+mod layers;
 mod pose;
 mod scene;
 mod sphere;

@@ -65,6 +65,11 @@ pub fn sphere(radius: f64, levels: usize) -> Mesh {
     Mesh { positions, triangles }
 }
 
+/// Warp along +Y in every triangle: for the isotropic fabrics of the tests any direction will do.
+pub fn down(mesh: &Mesh) -> Vec<DVec3> {
+    vec![DVec3::Y; mesh.triangles.len()]
+}
+
 /// A body that hangs rigidly on one joint.
 pub fn rigid(body: Mesh) -> Character {
     let joint = Joint { name: "hip".into(), parent: None, inverse_bind: DAffine3::IDENTITY };

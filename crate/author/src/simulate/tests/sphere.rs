@@ -1,7 +1,9 @@
 //! A square metre of cloth on a sphere: sorted heights against the figures of a published solver. simulation.md §1.1.
 //! Heights, not lobes: where the folds fall is a bifurcation.
 
-use super::scene::{rigid, sheet, sphere};
+use std::sync::Arc;
+
+use super::scene::{down, rigid, sheet, sphere};
 use crate::simulate::cloth::Cloth;
 use crate::simulate::collider::Collider;
 use crate::simulate::material::Material;
@@ -13,10 +15,10 @@ fn sheet_on_a_sphere_hangs_as_it_should() {
     let radius = 0.3;
     let body = rigid(sphere(radius, 5));
     let mesh = sheet(40, radius + 0.004);
-    let material = Material { density: 0.2, stretch: 1000.0, poisson: 0.3, bending: 2.29e-5, friction: 0.3 };
+    let material = Material { friction: 0.3, ..Material::isotropic(0.2, 1000.0, 0.3, 2.29e-5) };
     let settings = Settings { thickness: 0.003, reach: 10.0, ..Settings::default() };
-    let cloth = Cloth::new(&mesh, &material, 0.0).unwrap();
-    let layout = Layout::new(&cloth).unwrap();
+    let cloth = Cloth::new(&mesh, &down(&mesh), &material, 0.0).unwrap();
+    let layout = Arc::new(Layout::new(&cloth, &[]).unwrap());
     let collider = Collider::new(&body, &mesh, settings.reach).unwrap();
     let posed = collider.pose(&[glam::DAffine3::IDENTITY]);
     let mut solver = Solver::new(&cloth, &layout, &settings, mesh.positions.clone());
