@@ -106,24 +106,21 @@ pub fn render_dressed(
     let body = character.pose_body(pose);
     let normals = character.body.normals(&body);
     let surface = &character.surface;
-    let at_drawn = |of_body: &[DVec3]| surface.vertex.iter().map(|&at| of_body[at as usize]).collect::<Vec<_>>();
-    let drawn = [at_drawn(&body), at_drawn(&normals)];
+    let plain = surface.triangles.is_empty();
+    let vertex = if plain { (0..body.len() as u32).collect() } else { surface.vertex.clone() };
+    let at_drawn = |of_body: &[DVec3]| vertex.iter().map(|&at| of_body[at as usize]).collect::<Vec<_>>();
+    let (body, normals) = (at_drawn(&body), at_drawn(&normals));
+    let triangles = if plain { &character.body.triangles } else { &surface.triangles };
     let colour = if surface.colour.is_empty() { &[BODY][..] } else { &surface.colour };
-    let skin = if surface.triangles.is_empty() {
-        Layer { positions: &body, normals: &normals, triangles: &character.body.triangles, colour, two_sided: false }
-    } else {
-        let [positions, normals] = &drawn;
-        Layer { positions, normals, triangles: &surface.triangles, colour, two_sided: false }
-    };
-    let mut layers = vec![skin];
+    let mut layers = vec![Layer { positions: &body, normals: &normals, triangles, colour, two_sided: false }];
     let cloth_normals = cloth.map_or(Vec::new(), |(positions, triangles)| {
         Mesh { positions: Vec::new(), triangles: triangles.to_vec() }.normals(positions)
     });
     if let Some((positions, triangles)) = cloth {
         layers.push(Layer { positions, normals: &cloth_normals, triangles, colour: &[CLOTH], two_sided: true });
     }
-    let write_error = |error: image::ImageError| Error::File { path: path.into(), reason: error.to_string() };
-    contact_sheet(&layers, &View::THREE).save_with_format(path, image::ImageFormat::Png).map_err(write_error)
+    let saved = contact_sheet(&layers, &View::THREE).save_with_format(path, image::ImageFormat::Png);
+    saved.map_err(|error| Error::File { path: path.into(), reason: error.to_string() })
 }
 
 /// One view being drawn.

@@ -9,7 +9,7 @@ use glam::DVec3;
 const STEPS: usize = 12;
 const DAMPING: f64 = 1e-3;
 /// Shares of the leg length: wanted clearance, depth that counts as 1, height of a slab of skin that spheres are fitted to.
-const MARGIN: f64 = 0.022;
+const MARGIN: f64 = 0.035;
 const DEPTH: f64 = 0.1;
 const SLAB: f64 = 0.07;
 /// Radians of a difference quotient.
@@ -48,7 +48,7 @@ impl Clearance {
                 let around = thickness(skin, from, to);
                 at.iter().map(|&share| (from.lerp(to, share), around)).collect()
             };
-            local(fore, bone(joint(fore), wrist, &[0.4, 0.7, 1.0], &skin(fore)))
+            local(fore, bone(joint(fore), wrist, &[0.1, 0.4, 0.7, 1.0], &skin(fore)))
                 .chain(local(hand, bone(wrist, tip, &[0.5, 0.95], &fingers)))
                 .collect()
         };

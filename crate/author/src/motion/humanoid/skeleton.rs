@@ -9,6 +9,8 @@ use glam::{DAffine3, DMat3, DQuat, DVec3};
 
 /// Share of the leg's length beyond which reach is compressed, and the share it never passes.
 const REACH: [f64; 2] = [0.985, 0.9995];
+/// The same for a folded leg: below the first it gives way, the second, a knee bent by 147°, it never passes.
+const FOLD: [f64; 2] = [0.36, 0.28];
 
 /// A character's joints by their part in the body, and the rest geometry motions need.
 pub struct Humanoid {
@@ -254,8 +256,14 @@ fn spread(chain: &[usize], angles: [f64; 3], turn: &mut [DQuat]) {
     chain.iter().for_each(|&joint| turn[joint] = euler(angles.map(|angle| angle / share)));
 }
 
-/// The identity up to `REACH[0]`, then bent towards `REACH[1]`: a leg that snaps straight moves its knee too fast.
+/// The identity from `FOLD[0]` to `REACH[0]`, bent towards their limits: a leg that snaps straight moves its knee too fast.
 fn soft_limit(share: f64) -> f64 {
-    let [from, most] = REACH;
-    if share <= from { share } else { from + (most - from) * ((share - from) / (most - from)).tanh() }
+    let bent = |[from, limit]: [f64; 2]| from + (limit - from) * ((share - from) / (limit - from)).tanh();
+    if share > REACH[0] {
+        bent(REACH)
+    } else if share < FOLD[0] {
+        bent(FOLD)
+    } else {
+        share
+    }
 }
