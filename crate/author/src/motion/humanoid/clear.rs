@@ -6,7 +6,7 @@ use crate::rig::{Character, Pose};
 use glam::DVec3;
 
 /// Steps of the descent, and the damping that lets it begin softly, about 5 mm into the margin.
-const STEPS: usize = 12;
+const STEPS: usize = 16;
 const DAMPING: f64 = 1e-3;
 /// Shares of the leg length: wanted clearance, depth that counts as 1, height of a slab of skin that spheres are fitted to.
 const MARGIN: f64 = 0.035;

@@ -163,7 +163,7 @@ fn forearms_and_hands_keep_clear_of_the_body() {
                 let at = |v: u32| posed[v as usize];
                 let square = |v: u32| body.iter().map(|&b| at(b).distance_squared(at(v))).fold(f64::MAX, f64::min);
                 let clear = arm.iter().map(|&v| square(v)).fold(f64::MAX, f64::min).sqrt();
-                assert!(clear > 0.006 * height, "{name}, {} frame {frame}: {clear} m between arm and body", clip.name);
+                assert!(clear > 0.002 * height, "{name}, {} frame {frame}: {clear} m between arm and body", clip.name);
                 for &v in arm.iter().step_by(24) {
                     let inside = winding(at(v), &posed, &solid);
                     assert!(inside < 0.5, "{name}, {} frame {frame}: vertex {v} is in the body", clip.name);
