@@ -40,7 +40,25 @@ enum Command {
     Bench(bench::Arguments),
 }
 
+/// Exit code of a program that the signal SIGPIPE ends.
+const BROKEN_PIPE: i32 = 128 + 13;
+
+/// Ends quietly where the reader of the output has gone, as in `ctsn … | head`: `println!` can only panic then.
+fn end_with_the_reader() {
+    let report = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |panic| {
+        if panic
+            .payload_as_str()
+            .is_some_and(|text| text.starts_with("failed printing to std") && text.contains("pipe"))
+        {
+            std::process::exit(BROKEN_PIPE);
+        }
+        report(panic);
+    }));
+}
+
 fn main() -> std::process::ExitCode {
+    end_with_the_reader();
     let result = match Cli::parse().command {
         Command::Character(arguments) => character::run(&arguments),
         Command::Garment(arguments) => garment::run(&arguments),
