@@ -3,7 +3,7 @@
 mod commands;
 
 use clap::{Parser, Subcommand};
-use commands::{bake, bench, character, evaluate, garment, inspect, predict, render, simulate, train};
+use commands::{bake, bench, character, evaluate, garment, inspect, predict, render, sheet, simulate, train};
 
 /// Learned cloth for any skinned character.
 ///
@@ -16,6 +16,7 @@ use commands::{bake, bench, character, evaluate, garment, inspect, predict, rend
 ///
 ///   ctsn garment character.glb -o garment.glb         a garment, if you have none
 ///   ctsn simulate character.glb garment.glb -o data   quasi-static truth for every frame of the clips
+///   ctsn sheet data character.glb -o sheet.png        twelve of the poses, to judge by eye
 ///   ctsn train data -o model.safetensors              the network, from the first 90 % of every clip
 ///   ctsn evaluate model.safetensors data              errors on the rest
 ///   ctsn render model.safetensors character.glb --clip NAME --frame N -o picture.png
@@ -35,6 +36,7 @@ enum Command {
     Train(train::Arguments),
     Evaluate(evaluate::Arguments),
     Render(render::Arguments),
+    Sheet(sheet::Arguments),
     Inspect(inspect::Arguments),
     Predict(predict::Arguments),
     Bench(bench::Arguments),
@@ -63,6 +65,7 @@ fn main() -> std::process::ExitCode {
         Command::Character(arguments) => character::run(&arguments),
         Command::Garment(arguments) => garment::run(&arguments),
         Command::Render(arguments) => render::run(&arguments),
+        Command::Sheet(arguments) => sheet::run(&arguments),
         Command::Inspect(arguments) => inspect::run(&arguments),
         Command::Predict(arguments) => predict::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),

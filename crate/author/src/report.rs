@@ -195,7 +195,8 @@ impl std::fmt::Display for Report {
             ("stretch p99", self.stretch_p99, 3),
             ("stretch", self.stretch, 3),
         ];
-        for (name, Spread { median, p95, max }, digits) in rows {
+        let known = rows.into_iter().filter(|row| row.1.max > 0.0);
+        for (name, Spread { median, p95, max }, digits) in known {
             writeln!(f, "  {name:<13}{median:>10.digits$}{p95:>10.digits$}{max:>10.digits$}")?;
         }
         let Penetration { vertices, poses, depth } = self.penetration;

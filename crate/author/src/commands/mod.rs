@@ -8,6 +8,7 @@ pub mod garment;
 pub mod inspect;
 pub mod predict;
 pub mod render;
+pub mod sheet;
 pub mod simulate;
 pub mod train;
 
