@@ -45,8 +45,7 @@ pub struct Options {
     /// Clip to use, by name; may be given several times. Default: all
     #[arg(long = "clip")]
     pub clips: Vec<String>,
-    /// Material of the cloth
-    #[arg(long, default_value = "cotton")]
+    #[arg(long, default_value = "cotton", help = format!("Material of the cloth: {}", Material::names()))]
     pub material: String,
     /// Simulate this many poses a second time, every joint turned by half a degree, to measure the noise of the truth
     #[arg(long, value_name = "K", default_value_t = 0)]
@@ -55,7 +54,7 @@ pub struct Options {
 
 pub fn run(arguments: &Arguments) -> Result<()> {
     let Arguments { options, output, shard, .. } = arguments;
-    let material = material(&options.material)?;
+    let material = Material::named(&options.material)?;
     let character = character(&arguments.character, options)?;
     let garment = gltf::read_garment(&arguments.garment, character.metres_per_unit)?;
     let names = [file_name(&arguments.character), file_name(&arguments.garment)];
@@ -79,14 +78,6 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         bail!("no pose converged; the reasons stand above");
     }
     Ok(())
-}
-
-/// The material of that name.
-fn material(name: &str) -> Result<Material> {
-    match name {
-        "cotton" => Ok(Material::default()),
-        _ => bail!("--material: wanted cotton, found {name}"),
-    }
 }
 
 /// Reads a character with the chosen clips.
