@@ -71,13 +71,19 @@ fn drape_coefficient(bending_length: f64) -> f64 {
     let bending = density * GRAVITY * bending_length.powi(3);
     let mesh = disc();
     let material = Material::isotropic(density, 1000.0, 0.3, bending);
-    let settings = Settings { residual: 1e-3, ..Settings::default() };
+    // No stop where the cloth only moves slowly: buckling begins slowly.
+    let settings = Settings { residual: 1e-3, drift: 0.0, ..Settings::default() };
     let cloth = Cloth::new(&mesh, &down(&mesh), &material, 0.0).unwrap();
     let layout = Arc::new(Layout::new(&cloth, &[]).unwrap());
-    // The level disc is in balance with itself; a little noise decides where it buckles.
-    let mut rng = fastrand::Rng::with_seed(3);
     let held = |p: &DVec3| p.length() < TABLE + 1e-6;
-    let lift = |p: &DVec3| if held(p) { *p } else { *p + DVec3::Y * 1e-3 * rng.f64() };
+    // Bent down in six folds from the start, for the level disc is in balance with itself. Starts with 0 to 10 folds ended at
+    // 0.26-0.38, 0.50-0.62, 0.83-0.87 and 0.98; six had the least energy from 17 mm on.
+    let lift = |p: &DVec3| {
+        let over = (p.length() - TABLE).max(0.0);
+        let along = DVec3::new(p.x, 0.0, p.z).normalize_or_zero();
+        let tilt = 0.7 + 0.5 * (6.0 * p.z.atan2(p.x)).cos();
+        if held(p) { *p } else { along * (TABLE + over * tilt.cos()) - DVec3::Y * over * tilt.sin() }
+    };
     let start: Vec<DVec3> = mesh.positions.iter().map(lift).collect();
     let mut solver = Solver::new(&cloth, &layout, &settings, start);
     let pin = |vertex: usize| Pin { vertex, target: mesh.positions[vertex], stiffness: 1e4 };
@@ -95,12 +101,15 @@ fn drape_coefficient(bending_length: f64) -> f64 {
     coefficient
 }
 
+/// A first prototype, which stopped at 160 time steps, gave 0.43, 0.46, 0.70, 0.80. The last cannot be: even wedges that know
+/// nothing of their neighbours, each a cantilever that grows wider, keep 0.928 at 47 mm.
 #[test]
 fn stiffer_cloth_drapes_less() {
-    let expected = [(0.010, 0.43), (0.017, 0.46), (0.029, 0.70), (0.047, 0.80)];
+    let expected = [(0.010, 0.29), (0.017, 0.53), (0.029, 0.87), (0.047, 0.976)];
     let found = expected.map(|(length, _)| drape_coefficient(length));
     eprintln!("Cusick: found {found:.3?}, wanted {:?}", expected.map(|(_, wanted)| wanted));
     assert!(found.is_sorted_by(|a, b| a < b), "wanted coefficients that rise, found {found:?}");
+    assert!((0.928..1.0).contains(&found[3]), "stiffest: wanted more than free wedges keep, found {}", found[3]);
     for ((length, wanted), found) in expected.iter().zip(found) {
         assert!((found - wanted).abs() < 0.08, "bending length {length} m: wanted {wanted}, found {found}");
     }
