@@ -1,6 +1,6 @@
 //! `ctsn simulate`: the truth to learn from.
 
-use super::{bar, file_name};
+use super::{bar, file_name, remaining};
 use anyhow::{Result, bail};
 use ctsn_author::gltf;
 use ctsn_author::ground_truth::{Request, Run, Shard};
@@ -106,7 +106,7 @@ fn follow(work: &Run, character: &Character) -> Result<()> {
             bar.suspend(|| eprintln!("  left out: {clip} frame {}{twin}: {reason}", record.frame));
         }
         if bar.is_hidden() && bar.position().is_multiple_of(every) {
-            let left = indicatif::HumanDuration(bar.eta());
+            let left = remaining(bar.elapsed(), bar.position(), work.left() as u64);
             eprintln!("  {} of {} poses, {left} left", bar.position(), work.left());
         }
     })?;
