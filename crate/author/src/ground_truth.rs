@@ -17,9 +17,8 @@ use rayon::prelude::*;
 pub use request::Request;
 pub use shard::Shard;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
-use timing::Timing;
 pub use timing::seconds;
+use timing::{Stopwatch, Timing};
 
 /// A pose to simulate, and where it goes.
 struct Task<'a> {
@@ -81,7 +80,7 @@ impl<'a> Run<'a> {
     pub fn simulate(&self, progress: impl Fn(&Record, bool) + Sync) -> Result<()> {
         let timing = Timing::open(&self.folder, self.request.shard)?;
         let run = |task: &Task| -> Result<()> {
-            let start = Instant::now();
+            let start = Stopwatch::start();
             let turned = task.twin.then(|| noise::turned(self.request.character, task.pose, task.clip, task.frame));
             let pose = turned.as_ref().unwrap_or(task.pose);
             let outcome = self.simulator.simulate(&self.template, pose);

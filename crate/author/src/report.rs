@@ -76,7 +76,7 @@ pub struct Report {
     pub reasons: BTreeMap<String, usize>,
     /// Every frame left out.
     pub left_out: Vec<LeftOut>,
-    /// Seconds per pose and core, of all simulated, twins too.
+    /// Seconds of processor time per pose, of all simulated, twins too.
     pub seconds: Spread,
     /// RMS residual force of the kept poses, in mean vertex weights.
     pub residual: Spread,

@@ -8,7 +8,31 @@ use std::fs::{File, OpenOptions};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
-use std::time::Duration;
+use std::time::{Duration, Instant};
+
+/// A clock of this thread's work: of its processor time where the system tells it (Linux), else of the time that passes, which on a
+/// shared machine says little about a pose.
+pub(super) struct Stopwatch {
+    start: Instant,
+    busy: Option<Duration>,
+}
+
+impl Stopwatch {
+    pub fn start() -> Self {
+        Self { start: Instant::now(), busy: busy() }
+    }
+
+    pub fn elapsed(&self) -> Duration {
+        let busy = busy().zip(self.busy).and_then(|(now, then)| now.checked_sub(then));
+        busy.unwrap_or_else(|| self.start.elapsed())
+    }
+}
+
+/// Processor time of this thread so far: the first number of its `schedstat`, nanoseconds.
+fn busy() -> Option<Duration> {
+    let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
+    text.split(' ').next()?.parse().ok().map(Duration::from_nanos)
+}
 
 /// The log of one run.
 pub(super) struct Timing {
