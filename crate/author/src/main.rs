@@ -3,7 +3,7 @@
 mod commands;
 
 use clap::{Parser, Subcommand};
-use commands::{bake, bench, character, evaluate, garment, inspect, predict, render, sheet, simulate, train};
+use commands::{bake, bench, character, evaluate, garment, inspect, motion, predict, render, sheet, simulate, train};
 
 /// Learned cloth for any skinned character.
 ///
@@ -14,6 +14,7 @@ use commands::{bake, bench, character, evaluate, garment, inspect, predict, rend
 ///
 /// The same by steps, each resumable:
 ///
+///   ctsn motion character.glb -o moving.glb           clips, if it has none
 ///   ctsn garment character.glb -o garment.glb         a garment, if you have none
 ///   ctsn simulate character.glb garment.glb -o data   quasi-static truth for every frame of the clips
 ///   ctsn sheet data character.glb -o sheet.png        twelve of the poses, to judge by eye
@@ -31,6 +32,7 @@ struct Cli {
 enum Command {
     Bake(bake::Arguments),
     Character(character::Arguments),
+    Motion(motion::Arguments),
     Garment(garment::Arguments),
     Simulate(simulate::Arguments),
     Train(train::Arguments),
@@ -63,6 +65,7 @@ fn main() -> std::process::ExitCode {
     end_with_the_reader();
     let result = match Cli::parse().command {
         Command::Character(arguments) => character::run(&arguments),
+        Command::Motion(arguments) => motion::run(&arguments),
         Command::Garment(arguments) => garment::run(&arguments),
         Command::Render(arguments) => render::run(&arguments),
         Command::Sheet(arguments) => sheet::run(&arguments),

@@ -26,7 +26,7 @@ pub struct Layer<'a> {
     pub normals: &'a [DVec3],
     /// Vertex indices.
     pub triangles: &'a [[u32; 3]],
-    /// Linear RGB per triangle; the last one serves all further triangles, so one colour paints all.
+    /// Linear RGB per vertex; the last one serves all further vertices, so one colour paints all.
     pub colour: &'a [[f32; 3]],
     /// Draw the backs of triangles, darker: cloth is open, bodies are closed.
     pub two_sided: bool,

@@ -35,7 +35,7 @@ pub struct Surface {
     pub uv: Vec<DVec2>,
     /// Drawn-vertex indices, three per triangle.
     pub triangles: Vec<[u32; 3]>,
-    /// Linear RGB base colour per drawn triangle; empty when the file has none.
+    /// Linear RGB base colour per drawn vertex; empty when the file has none.
     pub colour: Vec<[f32; 3]>,
 }
 

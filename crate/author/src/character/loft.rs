@@ -18,6 +18,17 @@ pub struct Section {
     pub back: f64,
 }
 
+/// What a loft does to the lofts before it in its shell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Role {
+    /// Smooth union.
+    Join,
+    /// Smooth difference: eye sockets, the line between lips.
+    Carve,
+    /// Nothing to the shape: colours what lies within.
+    Paint,
+}
+
 /// One primitive of a body: elliptic sections lofted along a straight chord, closed by rounded caps.
 #[derive(Clone, Debug)]
 pub struct Loft {
@@ -35,8 +46,14 @@ pub struct Loft {
     pub caps: [f64; 2],
     /// Superellipse exponent of the sections: 2 is an ellipse, more is squarer.
     pub exponent: f64,
+    /// What it does to what comes before it in the table.
+    pub role: Role,
     /// Radius of the smooth union with what comes before it in the table, metres.
     pub blend: f64,
+    /// Number of the closed mesh it belongs to, 0 the body.
+    pub shell: usize,
+    /// Linear RGB.
+    pub colour: [f32; 3],
     /// Wanted edge length of the mesh on it, metres.
     pub edge: f64,
     /// Joints along it: (joint, where its influence begins along the chord, half width of that transition), metres.
@@ -50,9 +67,22 @@ impl Loft {
         let front = front.reject_from_normalized(along).normalize();
         let slopes = clamped_slopes(&sections);
         let frame = DMat3::from_cols(front.cross(along), front, along);
-        let bounds = [start; 2];
-        Loft { start, frame, sections, slopes, bounds, caps, exponent: 2.0, blend: 0.03, edge: 0.02, joints: vec![] }
-            .enclose()
+        Loft {
+            start,
+            frame,
+            sections,
+            slopes,
+            bounds: [start; 2],
+            caps,
+            exponent: 2.0,
+            role: Role::Join,
+            blend: 0.03,
+            shell: 0,
+            colour: [1.0; 3],
+            edge: 0.02,
+            joints: vec![],
+        }
+        .enclose()
     }
 
     /// First-order estimate of the signed distance of `p`, metres, negative inside.
@@ -178,7 +208,7 @@ pub fn smooth_min(a: f64, b: f64, k: f64) -> f64 {
     a.min(b) - h * h * h * k / 6.0
 }
 
-/// Signed distance estimate of the smooth union of `lofts` at `p`, metres, negative inside;
+/// Signed distance estimate of the smooth union and difference of `lofts` at `p`, metres, negative inside;
 /// infinite where no loft is near.
 pub fn distance(lofts: &[Loft], p: DVec3) -> f64 {
     lofts.iter().filter(|loft| loft.near(p)).fold(f64::INFINITY, |union, loft| join(union, loft, p))
@@ -186,8 +216,12 @@ pub fn distance(lofts: &[Loft], p: DVec3) -> f64 {
 
 /// `union` with one more loft.
 pub fn join(union: f64, loft: &Loft, p: DVec3) -> f64 {
-    let distance = loft.distance(p);
-    if union == f64::INFINITY { distance } else { smooth_min(union, distance, loft.blend) }
+    match loft.role {
+        Role::Join if union == f64::INFINITY => loft.distance(p),
+        Role::Join => smooth_min(union, loft.distance(p), loft.blend),
+        Role::Carve if union != f64::INFINITY => -smooth_min(-union, loft.distance(p), loft.blend),
+        Role::Carve | Role::Paint => union,
+    }
 }
 
 /// Gradient of [`distance`] by central differences of step 0.1 mm.

@@ -1,10 +1,9 @@
 //! The mannequin: an androgynous shop-window figure of 1.76 m in an A-pose, arms 42° below the horizontal.
 //! Feet on y = 0, facing +Z. Proportions of an eight-head fashion figure; lengths in metres.
 
-use super::figure::{Figure, JointRow, Part};
+use super::figure::{Figure, JointRow, PART, Part};
 
 const UP: [f64; 3] = [0.0, 1.0, 0.0];
-const FRONT: [f64; 3] = [0.0, 0.0, 1.0];
 /// Along the left arm: cos 42°, -sin 42°.
 const ARM: [f64; 3] = [0.7431, -0.6691, 0.0];
 
@@ -32,8 +31,6 @@ const PARTS: &[Part] = &[
     // Trunk, from the hips to the collar bones.
     Part {
         start: [0.0, 0.86, -0.008],
-        along: UP,
-        front: FRONT,
         sections: &[
             [0.070, 0.000, 0.160, 0.092, 0.098],
             [0.130, 0.000, 0.154, 0.092, 0.096],
@@ -47,7 +44,6 @@ const PARTS: &[Part] = &[
         ],
         caps: [0.120, 0.030],
         exponent: 2.2,
-        blend: 0.03,
         edge: 0.022,
         joints: &[
             ("Hips", 0.0, 0.01),
@@ -56,36 +52,34 @@ const PARTS: &[Part] = &[
             ("Spine2", 0.415, 0.07),
             ("Neck", 0.605, 0.04),
         ],
+        ..PART
     },
     // Breast.
     Part {
         start: [0.064, 1.308, 0.044],
         along: [0.45, -0.30, 0.06],
-        front: FRONT,
         sections: &[[-0.012, 0.0, 0.058, 0.036, 0.030], [0.012, 0.0, 0.058, 0.038, 0.030]],
         caps: [0.056, 0.052],
-        exponent: 2.0,
         blend: 0.065,
         edge: 0.020,
         joints: &[("Spine2", 0.0, 0.01), ("LeftShoulder", 0.2, 0.01)],
+        ..PART
     },
     // Seat.
     Part {
         start: [0.073, 0.945, -0.058],
         along: [0.0, -1.0, 0.10],
-        front: FRONT,
         sections: &[[-0.010, 0.0, 0.070, 0.050, 0.056], [0.020, 0.0, 0.072, 0.050, 0.058]],
         caps: [0.080, 0.064],
-        exponent: 2.0,
         blend: 0.05,
         edge: 0.022,
         joints: &[("Hips", 0.0, 0.01), ("LeftUpLeg", 0.055, 0.085)],
+        ..PART
     },
     // Neck.
     Part {
         start: [0.0, 1.40, -0.040],
         along: [0.0, 0.180, 0.038],
-        front: FRONT,
         sections: &[
             [0.00, 0.0, 0.066, 0.056, 0.060],
             [0.06, 0.0, 0.054, 0.051, 0.053],
@@ -93,22 +87,21 @@ const PARTS: &[Part] = &[
             [0.20, 0.0, 0.047, 0.046, 0.052],
         ],
         caps: [0.03, 0.02],
-        exponent: 2.0,
         blend: 0.06,
         edge: 0.016,
         joints: &[("Spine2", 0.0, 0.01), ("Neck", 0.055, 0.045), ("Head", 0.150, 0.035)],
+        ..PART
     },
     // Head: an egg.
     Part {
         start: [0.0, 1.530, 0.008],
-        along: UP,
-        front: FRONT,
         sections: &[[0.118, -0.002, 0.0742, 0.0920, 0.1015], [0.144, -0.005, 0.0748, 0.0940, 0.1035]],
         caps: [0.124, 0.090],
         exponent: 2.1,
         blend: 0.026,
         edge: 0.013,
         joints: &[("Neck", 0.0, 0.01), ("Head", 0.0, 0.01)],
+        ..PART
     },
     // Chin.
     Part {
@@ -117,48 +110,45 @@ const PARTS: &[Part] = &[
         front: UP,
         sections: &[[-0.012, 0.0, 0.028, 0.026, 0.024], [0.004, 0.0, 0.026, 0.026, 0.024]],
         caps: [0.03, 0.026],
-        exponent: 2.0,
         blend: 0.06,
         edge: 0.013,
         joints: &[("Head", 0.0, 0.01)],
+        ..PART
     },
     // Ridge of the nose: gives the face a direction, no more.
     Part {
         start: [0.0, 1.672, 0.088],
         along: [0.0, -0.056, 0.010],
-        front: FRONT,
         sections: &[
             [0.0, 0.0, 0.006, 0.006, 0.012],
             [0.028, 0.0, 0.007, 0.009, 0.012],
             [0.046, 0.0, 0.008, 0.0105, 0.012],
         ],
         caps: [0.030, 0.009],
-        exponent: 2.0,
         blend: 0.032,
         edge: 0.009,
         joints: &[("Head", 0.0, 0.01)],
+        ..PART
     },
     // Collar bone and trapezius.
     Part {
         start: [0.020, 1.468, -0.042],
         along: [0.150, -0.072, 0.016],
-        front: FRONT,
         sections: &[
             [0.0, 0.0, 0.026, 0.032, 0.036],
             [0.07, 0.0, 0.034, 0.042, 0.044],
             [0.15, 0.0, 0.044, 0.050, 0.050],
         ],
         caps: [0.03, 0.03],
-        exponent: 2.0,
         blend: 0.06,
         edge: 0.020,
         joints: &[("Spine2", 0.0, 0.01), ("LeftShoulder", 0.055, 0.050), ("LeftArm", 0.165, 0.045)],
+        ..PART
     },
     // Arm, shoulder to wrist.
     Part {
         start: [0.165, 1.386, -0.022],
         along: ARM,
-        front: FRONT,
         sections: &[
             [0.000, 0.000, 0.049, 0.053, 0.052],
             [0.060, 0.000, 0.0485, 0.053, 0.051],
@@ -171,7 +161,6 @@ const PARTS: &[Part] = &[
             [0.560, 0.002, 0.0195, 0.027, 0.025],
         ],
         caps: [0.054, 0.02],
-        exponent: 2.0,
         blend: 0.045,
         edge: 0.019,
         joints: &[
@@ -180,12 +169,12 @@ const PARTS: &[Part] = &[
             ("LeftForeArm", 0.282, 0.048),
             ("LeftHand", 0.538, 0.035),
         ],
+        ..PART
     },
     // Palm; thin across, thumb in front.
     Part {
         start: [0.5640, 1.0267, -0.022],
         along: ARM,
-        front: FRONT,
         sections: &[
             [-0.010, 0.002, 0.0190, 0.026, 0.024],
             [0.030, 0.003, 0.0165, 0.033, 0.032],
@@ -193,9 +182,9 @@ const PARTS: &[Part] = &[
         ],
         caps: [0.02, 0.020],
         exponent: 2.5,
-        blend: 0.03,
         edge: 0.011,
         joints: &[("LeftForeArm", -0.05, 0.01), ("LeftHand", 0.0, 0.035)],
+        ..PART
     },
     finger(0.0065, 1.00, INDEX),
     finger(-0.0115, 1.01, MIDDLE),
@@ -205,23 +194,21 @@ const PARTS: &[Part] = &[
     Part {
         start: [0.5775, 1.0110, 0.004],
         along: [0.060, -0.060, 0.050],
-        front: FRONT,
         sections: &[
             [0.0, 0.0, 0.015, 0.016, 0.016],
             [0.04, 0.0, 0.0125, 0.0125, 0.0125],
             [0.080, 0.0, 0.0088, 0.0092, 0.0092],
         ],
         caps: [0.015, 0.010],
-        exponent: 2.0,
         blend: 0.024,
         edge: 0.009,
         joints: &[("LeftHand", 0.0, 0.01)],
+        ..PART
     },
     // Leg, hip to ankle.
     Part {
         start: [0.088, 0.950, -0.005],
         along: [0.008, -0.870, -0.017],
-        front: FRONT,
         sections: &[
             [0.04, 0.000, 0.076, 0.082, 0.088],
             [0.10, 0.000, 0.079, 0.086, 0.092],
@@ -245,6 +232,7 @@ const PARTS: &[Part] = &[
             ("LeftLeg", 0.450, 0.062),
             ("LeftFoot", 0.862, 0.040),
         ],
+        ..PART
     },
     // Foot, heel to toes; the sections' front is up, and centre - back = 0 at the ground.
     Part {
@@ -263,6 +251,7 @@ const PARTS: &[Part] = &[
         blend: 0.035,
         edge: 0.013,
         joints: &[("LeftFoot", 0.0, 0.01), ("LeftToeBase", 0.163, 0.022)],
+        ..PART
     },
 ];
 
@@ -279,12 +268,11 @@ const fn finger(z: f64, knuckle: f64, sections: &'static [[f64; 5]]) -> Part {
     Part {
         start: [0.5640 + 0.0446 * knuckle, 1.0267 - 0.0401 * knuckle, z],
         along: ARM,
-        front: FRONT,
         sections,
         caps: [0.01, 0.010],
-        exponent: 2.0,
         blend: 0.009,
         edge: 0.0085,
         joints: &[("LeftHand", 0.0, 0.01)],
+        ..PART
     }
 }

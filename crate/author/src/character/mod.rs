@@ -1,23 +1,29 @@
 //! The project's own characters, built from tables: smooth union of lofts -> even mesh -> skin weights -> motion.
 //! simulation.md §4.1.
 
+mod andy;
+mod colour;
 mod figure;
 mod loft;
 mod mannequin;
+mod monster;
+mod qman;
 mod remesh;
 mod surface;
 mod weights;
 
-pub use figure::{Figure, JointRow, Part};
-pub use loft::smoothstep;
+pub use figure::{BALL, BOX, Figure, JointRow, PART, Part};
+pub use loft::{Role, smoothstep};
 
 use crate::motion;
 use crate::rig::{Character, Mesh, Surface};
 use crate::{Error, Result};
 use glam::DVec3;
+use loft::Loft;
 
 /// Every character this module can build, by name.
-const FIGURES: &[(&str, Figure)] = &[("mannequin", mannequin::MANNEQUIN)];
+const FIGURES: &[(&str, Figure)] =
+    &[("mannequin", mannequin::MANNEQUIN), ("andy", andy::ANDY), ("qman", qman::QMAN), ("monster", monster::MONSTER)];
 
 /// The character of that name, with the project's clips.
 pub fn character(name: &str) -> Result<Character> {
@@ -34,16 +40,41 @@ pub fn character(name: &str) -> Result<Character> {
 pub fn build(figure: &Figure) -> Character {
     let joints = figure.skeleton();
     let lofts = figure.lofts(&joints);
-    let edge = |p: DVec3| edge_length(&lofts, p);
-    let body = remesh::remesh(&surface::extract(&lofts, figure.cell), &edge, &|p| loft::project(&lofts, p), 8);
-    let weights = weights::weights(&body, &lofts, joints.len());
-    let surface = drawn(&body, figure.colour);
-    Character { joints, root: 0, body, weights, surface, clips: vec![], metres_per_unit: 1.0 }
+    let mut character = Character {
+        joints,
+        root: 0,
+        body: Mesh::default(),
+        weights: vec![],
+        surface: Surface::default(),
+        clips: vec![],
+        metres_per_unit: 1.0,
+    };
+    for shell in 0..=lofts.iter().map(|loft| loft.shell).max().unwrap_or(0) {
+        let own: Vec<Loft> = lofts.iter().filter(|loft| loft.shell == shell).cloned().collect();
+        let finest = own.iter().map(|loft| loft.edge).fold(f64::INFINITY, f64::min);
+        if !own.is_empty() {
+            add_shell(&mut character, &own, if shell == 0 { figure.cell } else { finest / 2.0 });
+        }
+    }
+    character
+}
+
+/// Adds the closed mesh of one shell's lofts, from a grid of spacing `cell` metres.
+fn add_shell(character: &mut Character, lofts: &[Loft], cell: f64) {
+    let edge = |p: DVec3| edge_length(lofts, p);
+    let project = |p: DVec3| loft::project(lofts, p);
+    let mut mesh = remesh::remesh(&surface::extract(lofts, cell), &edge, &project, 8);
+    colour::align(&mut mesh, lofts, project);
+    character.weights.extend(weights::weights(&mesh, lofts, character.joints.len()));
+    let first = character.body.positions.len() as u32;
+    colour::draw(&mut character.surface, &mesh, lofts, first);
+    character.body.triangles.extend(mesh.triangles.iter().map(|triangle| triangle.map(|corner| first + corner)));
+    character.body.positions.extend(mesh.positions);
 }
 
 /// Wanted edge length at `p`, metres: that of the lofts around it, nearer ones counting more.
-fn edge_length(lofts: &[loft::Loft], p: DVec3) -> f64 {
-    let share = |loft: &loft::Loft| (loft.edge, (-loft.distance(p).max(0.0) / 0.01).exp());
+fn edge_length(lofts: &[Loft], p: DVec3) -> f64 {
+    let share = |loft: &Loft| (loft.edge, (-loft.distance(p).max(0.0) / 0.01).exp());
     let (sum, weight) = lofts
         .iter()
         .filter(|loft| loft.near(p))
@@ -52,15 +83,5 @@ fn edge_length(lofts: &[loft::Loft], p: DVec3) -> f64 {
     if weight > 1e-9 { sum / weight } else { 0.02 }
 }
 
-/// Every welded vertex drawn once, in one colour.
-fn drawn(body: &Mesh, colour: [f32; 3]) -> Surface {
-    Surface {
-        vertex: (0..body.positions.len() as u32).collect(),
-        uv: vec![],
-        triangles: body.triangles.clone(),
-        colour: vec![colour; body.triangles.len()],
-    }
-}
-
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

@@ -1,7 +1,7 @@
 //! W0_j(v) ∝ Σ_lofts exp(-(d - d_min)/τ) · influence_j, then heat flow over the mesh; simulation.md §4.1.
 //! The lofts know their joints, so the flow only has to round the seams between them.
 
-use super::loft::Loft;
+use super::loft::{Loft, Role};
 use crate::rig::{Mesh, SkinWeights};
 use glam::DVec3;
 
@@ -20,10 +20,11 @@ pub fn weights(mesh: &Mesh, lofts: &[Loft], joints: usize) -> Vec<SkinWeights> {
 
 /// Weights from the lofts around `p` alone, summing to one.
 fn seed(lofts: &[Loft], p: DVec3, joints: usize) -> Vec<f64> {
-    let distances: Vec<f64> = lofts.iter().map(|loft| loft.distance(p)).collect();
+    let lofts = || lofts.iter().filter(|loft| loft.role == Role::Join);
+    let distances: Vec<f64> = lofts().map(|loft| loft.distance(p)).collect();
     let nearest = distances.iter().copied().fold(f64::INFINITY, f64::min);
     let mut row = vec![0.0; joints];
-    for (loft, distance) in lofts.iter().zip(distances) {
+    for (loft, distance) in lofts().zip(distances) {
         let share = (-(distance - nearest) / FADE).exp();
         loft.influence(p).for_each(|(joint, influence)| row[joint] += share * influence);
     }

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 /// Write one of the project's own characters, with its motion, as GLB
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// Name of the character: mannequin
+    /// Name of the character; a wrong one lists them
     name: String,
     /// Where to write it (GLB)
     #[arg(short, long)]
@@ -17,13 +17,6 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<()> {
     let character = character::character(&arguments.name)?;
     gltf::write_character(&arguments.output, &character, &gltf::Appearance::default())?;
-    let clips = character.clips.iter().map(|clip| format!("{} ({} frames)", clip.name, clip.poses.len()));
-    println!(
-        "{}: {} joints, {} triangles; clips: {}",
-        arguments.output.display(),
-        character.joints.len(),
-        character.body.triangles.len(),
-        clips.collect::<Vec<_>>().join(", ")
-    );
+    super::list_clips(&arguments.output, &character);
     Ok(())
 }

@@ -6,6 +6,7 @@ pub mod character;
 pub mod evaluate;
 pub mod garment;
 pub mod inspect;
+pub mod motion;
 pub mod predict;
 pub mod render;
 pub mod sheet;
@@ -14,6 +15,7 @@ pub mod train;
 
 use anyhow::{Context, Result};
 use ctsn_author::dataset;
+use ctsn_author::rig::{Character, Clip};
 use ctsn_author::train::Architecture;
 use ctsn_core::model::HostModel;
 use indicatif::{HumanDuration, ProgressBar, ProgressState, ProgressStyle};
@@ -70,6 +72,21 @@ pub fn bar(length: usize, what: &str) -> ProgressBar {
 /// two steps come at once and none for the next ten seconds, it wavers between nothing and days.
 pub fn remaining(taken: Duration, done: u64, all: u64) -> HumanDuration {
     HumanDuration(taken.mul_f64(all.saturating_sub(done) as f64 / done.max(1) as f64))
+}
+
+/// Tells what was written: joints, triangles, and the clips with their lengths in seconds.
+pub fn list_clips(path: &Path, character: &Character) {
+    let seconds = |clip: &Clip| (clip.poses.len().max(1) - 1) as f64 / clip.rate;
+    let clips = character.clips.iter().map(|clip| format!("{} ({:.1} s)", clip.name, seconds(clip)));
+    println!(
+        "{}: {} joints, {} triangles; {} clips, {:.0} s: {}",
+        path.display(),
+        character.joints.len(),
+        character.body.triangles.len(),
+        character.clips.len(),
+        character.clips.iter().map(seconds).sum::<f64>(),
+        clips.collect::<Vec<_>>().join(", ")
+    );
 }
 
 /// File name for messages and records, without its folder.

@@ -24,7 +24,7 @@ pub(super) struct Part {
     pub weights: Vec<SkinWeights>,
     /// Indices of the vertices above.
     pub triangles: Vec<[u32; 3]>,
-    /// Linear RGB per triangle.
+    /// [v] linear RGB.
     pub colour: Vec<[f32; 3]>,
 }
 
@@ -71,8 +71,21 @@ fn read_primitive(
         Some((_, joints)) => skin_weights(file, primitive, positions.len(), joints)?,
         None => Vec::new(),
     };
-    let colour = painter.paint(&material, &uv, &triangles);
+    let own = vertex_colours(file, primitive, positions.len())?;
+    let mut colour = painter.paint(&material, &uv, &triangles, positions.len());
+    colour.iter_mut().zip(&own).for_each(|(colour, own)| *colour = std::array::from_fn(|i| colour[i] * own[i]));
     Ok(Some(Part { node, skin: skin.map(|(index, _)| index), positions, uv, weights, triangles, colour }))
+}
+
+/// COLOR_0, linear RGB in [0, 1]; empty where there is none. glTF 2.0 §3.7.2.1.
+fn vertex_colours(file: &File, primitive: &Primitive, vertices: usize) -> Read<Vec<[f32; 3]>> {
+    let Some(accessor) = primitive.get(&Semantic::Colors(0)) else { return Ok(Vec::new()) };
+    let wanted = if accessor.dimensions() == Dimensions::Vec4 { Dimensions::Vec4 } else { Dimensions::Vec3 };
+    let channels = file.components(&accessor, wanted, "vertex colours")?;
+    let colour = |rgb: &[f64]| std::array::from_fn(|channel| rgb[channel].clamp(0.0, 1.0) as f32);
+    let colours: Vec<[f32; 3]> = channels.chunks_exact(wanted.multiplicity()).map(colour).collect();
+    check_count("vertex colours", colours.len(), vertices, false)?;
+    Ok(colours)
 }
 
 fn check_count(what: &str, found: usize, wanted: usize, absent: bool) -> Read<()> {

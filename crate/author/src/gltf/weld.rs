@@ -20,7 +20,7 @@ pub(super) struct Soup {
     pub uv: Vec<DVec2>,
     /// Three vertices per triangle.
     pub triangles: Vec<[u32; 3]>,
-    /// Linear RGB per triangle.
+    /// Linear RGB per vertex. [v]
     pub colour: Vec<[f32; 3]>,
 }
 
@@ -45,6 +45,7 @@ impl Soup {
                     self.positions.push(part.positions[old]);
                     self.weights.push(part.weights.get(old).cloned().unwrap_or_default());
                     self.uv.extend(part.uv.get(old));
+                    self.colour.extend(part.colour.get(old));
                     self.positions.len() as u32 - 1
                 })
             });
@@ -53,7 +54,6 @@ impl Soup {
             }
             self.triangles.push(corners);
         }
-        self.colour.extend(part.colour);
     }
 
     /// Largest side of the bounding box, metres.

@@ -125,14 +125,14 @@ impl Writer {
         self.accessors[accessor]["max"] = json!(high.to_array()[..width]);
     }
 
-    /// One primitive per colour over shared vertices.
+    /// The one primitive of a mesh, as the list a mesh holds; colours as COLOR_0.
     fn primitives(
         &mut self,
         mesh: &Mesh,
         surface: &Surface,
         appearance: &Appearance,
         weights: Option<&[SkinWeights]>,
-    ) -> Vec<Value> {
+    ) -> Value {
         let plain = surface.triangles.is_empty();
         let vertex = if plain { (0..mesh.positions.len() as u32).collect() } else { surface.vertex.clone() };
         let triangles = if plain { &mesh.triangles } else { &surface.triangles };
@@ -148,24 +148,18 @@ impl Writer {
         if let Some(weights) = weights {
             self.skin_attributes(&mut attributes, &vertex, weights);
         }
-        let mut groups: Vec<([f32; 3], Vec<u32>)> = Vec::new();
-        for (at, triangle) in triangles.iter().enumerate() {
-            let colour = surface.colour.get(at).copied().filter(|_| !plain).unwrap_or(appearance.colour);
-            match groups.iter_mut().find(|group| group.0 == colour) {
-                Some(group) => group.1.extend(triangle),
-                None => groups.push((colour, triangle.to_vec())),
-            }
+        let painted = !plain && !surface.colour.is_empty();
+        if painted {
+            let colours = surface.colour.iter().flatten().map(|&channel| f64::from(channel));
+            attributes["COLOR_0"] = json!(self.floats("VEC3", 3, colours));
         }
-        let primitive = |(colour, corners): ([f32; 3], Vec<u32>)| {
-            let bytes = corners.iter().flat_map(|corner| corner.to_le_bytes());
-            let indices = self.accessor("SCALAR", U32, corners.len(), bytes);
-            let [red, green, blue] = colour;
-            let metal = json!({ "baseColorFactor": [red, green, blue, 1.0], "metallicFactor": 0.0,
-                "roughnessFactor": appearance.roughness });
-            self.materials.push(json!({ "pbrMetallicRoughness": metal, "doubleSided": weights.is_none() }));
-            json!({ "attributes": attributes, "indices": indices, "material": self.materials.len() - 1 })
-        };
-        groups.into_iter().map(primitive).collect()
+        let corners = triangles.iter().flatten().flat_map(|corner| corner.to_le_bytes());
+        let indices = self.accessor("SCALAR", U32, 3 * triangles.len(), corners);
+        let [red, green, blue] = if painted { [1.0; 3] } else { appearance.colour };
+        let material = json!({ "pbrMetallicRoughness": { "baseColorFactor": [red, green, blue, 1.0],
+            "metallicFactor": 0.0, "roughnessFactor": appearance.roughness }, "doubleSided": weights.is_none() });
+        self.materials.push(material);
+        json!([{ "attributes": attributes, "indices": indices, "material": self.materials.len() - 1 }])
     }
 
     /// JOINTS_n and WEIGHTS_n, four joints each, as many sets as the richest vertex needs.

@@ -1,54 +1,38 @@
-//! Motion of any humanoid, generated: posture(t) -> G_j(t), each clip closed and C¹; simulation.md §5.
-//! Feet stay on the floor by inverse kinematics; the root stays within a metre.
+//! Motion for the skeletons the project knows, generated: posture(t) -> G_j(t), each clip closed and C¹; simulation.md §5.
 
-mod exercises;
-mod gait;
-mod humanoid;
-mod moves;
-mod posture;
-mod showcase;
-mod wander;
+pub mod humanoid;
 
-pub use humanoid::Humanoid;
-pub use posture::{Posture, through};
-
-use crate::rig::{Character, Clip};
+use crate::rig::{Character, Clip, Pose};
 use crate::{Error, Result};
 
 /// Poses per second of the project's own characters.
 pub const RATE: f64 = 30.0;
 
-/// Every clip for `character` at `rate` poses per second: gaits, moves, seeded wanderings, the showcase.
+/// A kind of body: what it is called, and its clips at a rate, or what the skeleton lacks to be of this kind.
+type Kind = (&'static str, fn(&Character, f64) -> Result<Vec<Clip>>);
+
+/// Tried in turn.
+const KINDS: &[Kind] = &[("two arms and two legs", humanoid::clips)];
+
+/// Every clip for `character` at `rate` poses per second, of the first kind of body its skeleton fits.
 /// Each ends with the posture it began with, up to rounding.
 pub fn clips(character: &Character, rate: f64) -> Result<Vec<Clip>> {
     if !(rate > 0.0 && rate <= 1000.0) {
         return Err(Error::Character(format!("wanted up to 1000 poses per second, found {rate}")));
     }
-    let humanoid = Humanoid::new(character)?;
-    let moves = moves::moves();
-    let mut clips = vec![
-        sample(&humanoid, "showcase", showcase::PERIOD, rate, |time| showcase::at(&moves, time)),
-        sample(&humanoid, "walk", 4.0 * gait::WALK.stride, rate, |time| gait::WALK.at(time)),
-        sample(&humanoid, "jog", 6.0 * gait::JOG.stride, rate, |time| gait::JOG.at(time)),
-    ];
-    for each in &moves {
-        clips.push(sample(&humanoid, each.name, each.period, rate, |time| through(&each.keys, each.period, time)));
+    let mut lacks = Vec::new();
+    for (kind, clips) in KINDS {
+        match clips(character, rate) {
+            Err(Error::Character(reason)) => lacks.push(format!("as a body with {kind}: {reason}")),
+            moved => return moved,
+        }
     }
-    for seed in 1..=2 {
-        let keys = wander::keys(seed);
-        clips.push(sample(&humanoid, &format!("wander {seed}"), wander::PERIOD, rate, |time| {
-            through(&keys, wander::PERIOD, time)
-        }));
-    }
-    Ok(clips)
+    Err(Error::Character(format!("no motion fits this skeleton; {}", lacks.join("; "))))
 }
 
 /// Frames from 0 to `period`, both ends included; the rate is stretched so that the last frame falls on the period.
-fn sample(humanoid: &Humanoid, name: &str, period: f64, rate: f64, posture: impl Fn(f64) -> Posture) -> Clip {
+fn sample(name: &str, period: f64, rate: f64, pose: impl Fn(f64) -> Pose) -> Clip {
     let frames = (period * rate).round().max(1.0);
-    let poses = (0..=frames as usize).map(|frame| humanoid.pose(&posture(period * frame as f64 / frames))).collect();
+    let poses = (0..=frames as usize).map(|frame| pose(period * frame as f64 / frames)).collect();
     Clip { name: name.to_string(), rate: frames / period, poses }
 }
-
-#[cfg(test)]
-mod tests;

@@ -99,10 +99,11 @@ impl Canvas {
     }
 
     fn draw(&mut self, layer: &Layer) {
-        for (at, triangle) in layer.triangles.iter().enumerate() {
+        for triangle in layer.triangles {
             let corners = triangle.map(|corner| self.project(layer.positions[corner as usize]));
             let normals = triangle.map(|corner| self.axes * layer.normals[corner as usize]);
-            let colour = layer.colour.get(at).or(layer.colour.last()).unwrap_or(&[0.5; 3]).map(f64::from);
+            let painted = |corner: u32| layer.colour.get(corner as usize).or(layer.colour.last()).unwrap_or(&[0.5; 3]);
+            let colours = triangle.map(|corner| DVec3::from(painted(corner).map(f64::from)));
             let two_sided = layer.two_sided;
             self.fill(corners, |share, front| {
                 let normal = normals[0] * share.x + normals[1] * share.y + normals[2] * share.z;
@@ -111,7 +112,7 @@ impl Canvas {
                     (false, true) => shade(-normal) * BACK,
                     (false, false) => return None,
                 };
-                Some(DVec3::from(colour) * light)
+                Some((colours[0] * share.x + colours[1] * share.y + colours[2] * share.z) * light)
             });
         }
     }

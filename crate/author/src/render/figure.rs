@@ -26,13 +26,15 @@ pub(super) struct Figure {
 impl Figure {
     /// The body in `pose`, and cloth (positions in the same world, triangles).
     pub fn new(character: &Character, pose: &Pose, cloth: Option<(&[DVec3], &[[u32; 3]])>) -> Self {
-        let positions = character.pose_body(pose);
-        let surface = &character.surface;
-        let drawn = surface.triangles.iter().map(|triangle| triangle.map(|corner| surface.vertex[corner as usize]));
+        let (posed, surface) = (character.pose_body(pose), &character.surface);
+        let normals = character.body.normals(&posed);
+        let plain = surface.triangles.is_empty();
+        let vertex = if plain { (0..posed.len() as u32).collect() } else { surface.vertex.clone() };
+        let drawn = |of_body: &[DVec3]| vertex.iter().map(|&at| of_body[at as usize]).collect();
         let body = Part {
-            normals: character.body.normals(&positions),
-            positions,
-            triangles: if surface.triangles.is_empty() { character.body.triangles.clone() } else { drawn.collect() },
+            positions: drawn(&posed),
+            normals: drawn(&normals),
+            triangles: if plain { character.body.triangles.clone() } else { surface.triangles.clone() },
             colour: if surface.colour.is_empty() { vec![BODY] } else { surface.colour.clone() },
         };
         let cloth = cloth.map(|(positions, triangles)| {

@@ -102,6 +102,11 @@ fn numbers_out_of_range_are_refused() {
         json["accessors"][accessor]["count"] = json!(17);
     });
     assert_says(&uneven, &["texture coordinates", "91", "17"]);
+    let unpainted = refusal(|json, _| {
+        let accessor = attribute(json, "COLOR_0");
+        json["accessors"][accessor]["count"] = json!(17);
+    });
+    assert_says(&unpainted, &["vertex colours", "91", "17"]);
     let kind = refusal(|json, _| {
         let accessor = attribute(json, "POSITION");
         json["accessors"][accessor]["type"] = json!("SCALAR");
@@ -120,7 +125,7 @@ fn numbers_out_of_range_are_refused() {
     assert_says(&nowhere, &["animation 1", "node 70", "of 7"]);
     let path = refusal(|json, _| json["animations"][1]["channels"][0]["target"]["path"] = json!("colour"));
     assert_says(&path, &["animation 1", "rotation"]);
-    let positions = refusal(|json, _| json["meshes"][0]["primitives"][1]["attributes"]["POSITION"] = json!(70));
+    let positions = refusal(|json, _| json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = json!(70));
     assert_says(&positions, &["mesh 0", "accessor 70"]);
     let image = refusal(|json, _| json["images"] = json!([{ "name": "empty" }]));
     assert_says(&image, &["image 0", "neither"]);

@@ -92,8 +92,8 @@ fn tube_mesh() -> (Mesh, Surface) {
         mesh.triangles.extend([bottom.map(|s| welded(0, s)), top.map(|s| welded(RINGS - 1, s))]);
         surface.triangles.extend([bottom.map(|s| drawn(0, s)), top.map(|s| drawn(RINGS - 1, s))]);
     }
-    let half = surface.triangles.len() / 2;
-    surface.colour = (0..surface.triangles.len()).map(|at| [if at < half { 0.25 } else { 0.75 }, 0.5, 0.125]).collect();
+    let half = surface.vertex.len() / 2;
+    surface.colour = (0..surface.vertex.len()).map(|at| [if at < half { 0.25 } else { 0.75 }, 0.5, 0.125]).collect();
     (mesh, surface)
 }
 

@@ -1,8 +1,10 @@
 //! Moves as key postures: (seconds, posture), closed and C¹ by [`through`](super::posture::through).
 //! Arms stay clear of the trunk: cloth caught in an armpit has no unique rest state.
 
+use super::calm::calm;
 use super::exercises::exercises;
 use super::posture::Posture;
+use super::sport::sport;
 
 /// A move: its period in seconds and its keys.
 pub struct Move {
@@ -39,6 +41,8 @@ pub fn wide(width: f64) -> [[f64; 5]; 2] {
 pub fn moves() -> Vec<Move> {
     let mut all = vec![look_around(), dance(), groove(), wave()];
     all.extend(exercises());
+    all.extend(calm());
+    all.extend(sport());
     all
 }
 

@@ -1,6 +1,7 @@
 //! Posture -> joint transforms: forward kinematics for trunk and arms, two-bone inverse kinematics for the legs.
 //! Works on any skeleton with the usual humanoid names, +Y up, facing +Z, left at +X, whatever its joint axes.
 
+use super::clear::Clearance;
 use super::posture::Posture;
 use crate::rig::{Character, Pose};
 use crate::{Error, Result};
@@ -8,6 +9,8 @@ use glam::{DAffine3, DMat3, DQuat, DVec3};
 
 /// Share of the leg's length beyond which reach is compressed, and the share it never passes.
 const REACH: [f64; 2] = [0.985, 0.9995];
+/// The same for a folded leg: below the first it gives way, the second, a knee bent by 147°, it never passes.
+const FOLD: [f64; 2] = [0.36, 0.28];
 
 /// A character's joints by their part in the body, and the rest geometry motions need.
 pub struct Humanoid {
@@ -23,6 +26,7 @@ pub struct Humanoid {
     floor: f64,
     /// Hip joint to floor, metres.
     leg_length: f64,
+    clearance: Clearance,
 }
 
 struct Arm {
@@ -80,21 +84,26 @@ impl Humanoid {
             if straight { Ok(leg) } else { Err(Error::Character(wanted)) }
         };
         let legs = [leg("Left")?, leg("Right")?];
-        Ok(Humanoid {
-            parents: character.joints.iter().map(|joint| joint.parent).collect(),
-            hips: need("Hips")?,
-            spine: ["Spine", "Spine1", "Spine2"].iter().filter_map(|name| find(name)).collect(),
-            head: ["Neck", "Head"].iter().filter_map(|name| find(name)).collect(),
-            arms: [arm("Left")?, arm("Right")?],
-            leg_length: place(legs[0].upper).y - floor,
-            legs,
-            bind,
-            floor,
-        })
+        let arms = [arm("Left")?, arm("Right")?];
+        let hips = need("Hips")?;
+        let chain = |names: &[&str]| names.iter().filter_map(|name| find(name)).collect::<Vec<usize>>();
+        let (spine, head) = (chain(&["Spine", "Spine1", "Spine2"]), chain(&["Neck", "Head"]));
+        let leg_length = place(legs[0].upper).y - floor;
+        let solid = [hips].into_iter().chain(legs.iter().flat_map(|leg| [leg.upper, leg.lower]));
+        let solid: Vec<usize> = solid.chain(spine.iter().chain(&head).copied()).collect();
+        let outer = [0, 1].map(|side: usize| [arms[side].fore, arms[side].hand]);
+        let clearance = Clearance::measure(character, &solid, outer, floor, leg_length);
+        let parents = character.joints.iter().map(|joint| joint.parent).collect();
+        Ok(Humanoid { parents, bind, hips, spine, head, arms, legs, floor, leg_length, clearance })
     }
 
-    /// Joint world transforms `G_j` of a posture, metres.
+    /// Joint world transforms `G_j` of a posture, its arms kept clear of the body, metres.
     pub fn pose(&self, posture: &Posture) -> Pose {
+        self.place(&self.clearance.clear(posture, |posture| self.place(posture)))
+    }
+
+    /// Joint world transforms of a posture as it is.
+    fn place(&self, posture: &Posture) -> Pose {
         let heading = DQuat::from_rotation_y(posture.heading.to_radians());
         // Turns relative to the parent, in canonical axes; the legs follow once the hips are placed.
         let mut turn = vec![DQuat::IDENTITY; self.bind.len()];
@@ -247,8 +256,14 @@ fn spread(chain: &[usize], angles: [f64; 3], turn: &mut [DQuat]) {
     chain.iter().for_each(|&joint| turn[joint] = euler(angles.map(|angle| angle / share)));
 }
 
-/// The identity up to `REACH[0]`, then bent towards `REACH[1]`: a leg that snaps straight moves its knee too fast.
+/// The identity from `FOLD[0]` to `REACH[0]`, bent towards their limits: a leg that snaps straight moves its knee too fast.
 fn soft_limit(share: f64) -> f64 {
-    let [from, most] = REACH;
-    if share <= from { share } else { from + (most - from) * ((share - from) / (most - from)).tanh() }
+    let bent = |[from, limit]: [f64; 2]| from + (limit - from) * ((share - from) / (limit - from)).tanh();
+    if share > REACH[0] {
+        bent(REACH)
+    } else if share < FOLD[0] {
+        bent(FOLD)
+    } else {
+        share
+    }
 }

@@ -1,0 +1,142 @@
+//! Arms kept out of the body and off the floor, whatever its proportions: descent of Σ max(0, 1 - d/d₀)³ over arm angles.
+//! The body is spheres measured from its skin. A fixed number of damped steps of a C² function keeps every path smooth.
+
+use super::posture::Posture;
+use crate::rig::{Character, Pose};
+use glam::DVec3;
+
+/// Steps of the descent, and the damping that lets it begin softly, about 5 mm into the margin.
+const STEPS: usize = 12;
+const DAMPING: f64 = 1e-3;
+/// Shares of the leg length: wanted clearance, depth that counts as 1, height of a slab of skin that spheres are fitted to.
+const MARGIN: f64 = 0.035;
+const DEPTH: f64 = 0.1;
+const SLAB: f64 = 0.07;
+/// Radians of a difference quotient.
+const DELTA: f64 = 1e-3;
+
+/// A sphere fixed to a joint: joint, centre in its space, radius; metres.
+type Ball = (usize, DVec3, f64);
+
+/// What an arm must not pass through.
+pub struct Clearance {
+    obstacles: Vec<Ball>,
+    /// Left and right: points of forearm and hand with the flesh around them.
+    arms: [Vec<Ball>; 2],
+    floor: f64,
+    scale: f64,
+}
+
+impl Clearance {
+    /// `solid`: joints of trunk, head and legs; `arms`: forearm and hand, left and right; `scale`: leg length, metres.
+    pub fn measure(character: &Character, solid: &[usize], arms: [[usize; 2]; 2], floor: f64, scale: f64) -> Clearance {
+        let skin = |joint: usize| -> Vec<DVec3> {
+            let follows = |v: &usize| character.weights[*v].first().is_some_and(|strongest| strongest.0 == joint);
+            (0..character.weights.len()).filter(follows).map(|v| character.body.positions[v]).collect()
+        };
+        let local = |joint: usize, balls: Vec<(DVec3, f64)>| {
+            let bind = character.joints[joint].inverse_bind;
+            balls.into_iter().map(move |(centre, radius)| (joint, bind.transform_point3(centre), radius))
+        };
+        let joint = |index: usize| character.joints[index].inverse_bind.inverse().translation;
+        let arm = |[fore, hand]: [usize; 2]| -> Vec<Ball> {
+            let wrist = joint(hand);
+            let fingers = skin(hand);
+            let farther = |a: &&DVec3, b: &&DVec3| a.distance(wrist).total_cmp(&b.distance(wrist));
+            let tip = fingers.iter().max_by(farther).copied().unwrap_or(wrist);
+            let bone = |from: DVec3, to: DVec3, at: &[f64], skin: &[DVec3]| -> Vec<(DVec3, f64)> {
+                let around = thickness(skin, from, to);
+                at.iter().map(|&share| (from.lerp(to, share), around)).collect()
+            };
+            local(fore, bone(joint(fore), wrist, &[0.1, 0.4, 0.7, 1.0], &skin(fore)))
+                .chain(local(hand, bone(wrist, tip, &[0.5, 0.95], &fingers)))
+                .collect()
+        };
+        let obstacles = solid.iter().flat_map(|&joint| local(joint, fill(&skin(joint), SLAB * scale))).collect();
+        Clearance { obstacles, arms: arms.map(arm), floor, scale }
+    }
+
+    /// How deep either arm of a pose is in what it should keep clear of: Σ depth³, zero when clear.
+    fn penalties(&self, pose: &Pose) -> [f64; 2] {
+        let place = |ball: &Ball| (pose[ball.0].transform_point3(ball.1), ball.2);
+        let solid: Vec<(DVec3, f64)> = self.obstacles.iter().map(place).collect();
+        let arms = [0, 1].map(|side| self.arms[side].iter().map(place).collect::<Vec<_>>());
+        let margin = MARGIN * self.scale;
+        let cube = |short: f64| (short.max(0.0) / (DEPTH * self.scale)).powi(3);
+        let short = |(a, r): (DVec3, f64), (b, s): (DVec3, f64)| cube(r + s + margin - a.distance(b));
+        [0, 1].map(|side: usize| {
+            let of_point = |&point: &(DVec3, f64)| {
+                let others = solid.iter().chain(&arms[1 - side]);
+                let floor = cube(self.floor + point.1 + margin - point.0.y);
+                floor + others.map(|&other| short(point, other)).sum::<f64>()
+            };
+            arms[side].iter().map(of_point).sum()
+        })
+    }
+
+    /// The posture with its arms moved as little as needed; `pose` is the forward kinematics.
+    pub fn clear(&self, posture: &Posture, pose: impl Fn(&Posture) -> Pose) -> Posture {
+        let mut posture = *posture;
+        for _ in 0..STEPS {
+            let here = self.penalties(&pose(&posture));
+            if here == [0.0; 2] {
+                break;
+            }
+            // Raise, swing, twist, elbow of both arms at once: either's penalty hardly feels the other's angles.
+            let slopes: [[f64; 2]; 4] = std::array::from_fn(|channel| {
+                let mut moved = posture;
+                moved.arms.iter_mut().for_each(|arm| arm[channel] += DELTA.to_degrees());
+                let there = self.penalties(&pose(&moved));
+                [0, 1].map(|side| (there[side] - here[side]) / DELTA)
+            });
+            for side in 0..2 {
+                let steepness: f64 = slopes.iter().map(|slope| slope[side] * slope[side]).sum();
+                let length = 2.0 * here[side] / (steepness + DAMPING);
+                let arm = &mut posture.arms[side];
+                // An elbow near straight and an arm near upright give way less, so neither passes its limit.
+                let room =
+                    [(172.0 - arm[0]).clamp(0.0, 20.0) / 20.0, 1.0, 1.0, arm[3].max(0.0) / (arm[3].max(0.0) + 8.0)];
+                for channel in 0..4 {
+                    arm[channel] -= (room[channel] * length * slopes[channel][side]).to_degrees();
+                }
+            }
+        }
+        posture
+    }
+}
+
+/// Mean distance of skin from the line between two points; zero without skin.
+fn thickness(skin: &[DVec3], from: DVec3, to: DVec3) -> f64 {
+    let along = (to - from).normalize_or(DVec3::Y);
+    let total: f64 = skin.iter().map(|&p| (p - from).reject_from_normalized(along).length()).sum();
+    total / skin.len().max(1) as f64
+}
+
+/// Spheres side by side in each slab of that height of a body part, as deep as the slab.
+fn fill(skin: &[DVec3], slab: f64) -> Vec<(DVec3, f64)> {
+    let bounds = |points: &mut dyn Iterator<Item = DVec3>| {
+        points.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)))
+    };
+    let (bottom, top) = bounds(&mut skin.iter().copied());
+    let count = ((top.y - bottom.y) / slab).ceil().clamp(0.0, 100.0) as usize;
+    let mut balls = Vec::new();
+    for i in 0..count {
+        let (from, to) = (bottom.y + slab * i as f64, bottom.y + slab * (i + 1) as f64);
+        let (low, high) = bounds(&mut skin.iter().copied().filter(|p| (from..=to).contains(&p.y)));
+        let (half, middle) = ((high - low) / 2.0, (high + low) / 2.0);
+        let radius = half.z.min(half.x);
+        // Not above the head nor below the foot.
+        let y = if top.y - bottom.y > 2.0 * radius {
+            middle.y.clamp(bottom.y + radius, top.y - radius)
+        } else {
+            (top.y + bottom.y) / 2.0
+        };
+        let spare = half - radius;
+        let across = |share: f64| (DVec3::new(middle.x + share * spare.x, y, middle.z), radius);
+        if radius.is_finite() && radius > 0.0 {
+            let sides: &[f64] = if spare.x > 0.3 * radius { &[-1.0, 0.0, 1.0] } else { &[0.0] };
+            balls.extend(sides.iter().map(|&share| across(share)));
+        }
+    }
+    balls
+}
