@@ -67,7 +67,11 @@ fn setup(character: &Character, garment: &Garment, names: [&str; 2], material: &
             joints: character.joints.iter().map(|joint| joint.name.clone()).collect(),
             root: character.root,
             inverse_bind: character.joints.iter().map(|joint| row_major(&joint.inverse_bind).to_vec()).collect(),
-            material: format!("{material:?}"),
+            // Other pins are another truth.
+            material: match garment.pins.is_empty() {
+                true => format!("{material:?}"),
+                false => format!("{material:?}, pins {:?}", garment.pins),
+            },
         },
         garment: rest.clone(),
         template: rest,
@@ -104,7 +108,8 @@ pub fn simulate(
         )));
     }
     let material = Material::default();
-    let simulator = Simulator::new(character, garment, material, Settings::default())?;
+    let settings = Settings { attached: garment.pins.clone(), ..Settings::default() };
+    let simulator = Simulator::new(character, garment, material, settings)?;
     let mut wanted = setup(character, garment, names, &material);
     let setup = match Setup::read(folder)? {
         Some(found) => {
@@ -202,7 +207,7 @@ mod tests {
         };
         let poses = vec![character.canonical_pose(); 2];
         character.clips.push(Clip { name: "still".to_owned(), rate: 7.3, poses });
-        (character, Garment { mesh: mesh(0.01), surface: Drawn::default() })
+        (character, Garment { mesh: mesh(0.01), ..Garment::default() })
     }
 
     #[test]

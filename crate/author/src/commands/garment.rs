@@ -1,8 +1,9 @@
 //! `ctsn garment`: a garment for any character.
 
 use anyhow::Result;
-use ctsn_author::garment::{Cut, shell};
+use ctsn_author::garment::{Cut, Kind, Rest, default_kind, drape, shell};
 use ctsn_author::gltf;
+use ctsn_author::rig::Garment;
 use std::path::{Path, PathBuf};
 
 /// Make a garment for any rigged character
@@ -23,32 +24,34 @@ pub struct Arguments {
 /// How the garment is cut.
 #[derive(clap::Args, Clone)]
 pub struct CutArguments {
-    /// Distance from the body, metres. Default: 12 mm on a human
+    /// What to make. Default: a T-shirt for what walks upright, a coat for an animal, a vest for what has no limbs
+    #[arg(long)]
+    kind: Option<Kind>,
+    /// Vertices, about: 500 to 10000. Default: 3000
+    #[arg(long)]
+    vertices: Option<usize>,
+    /// Distance from the body, metres. Default by kind; a T-shirt's on a human: 12 mm
     #[arg(long)]
     looseness: Option<f64>,
-    /// Vertices, about: 500 to 10000
-    #[arg(long, default_value_t = Cut::default().vertices)]
-    vertices: usize,
-    /// Covered joint, by name; may be given several times. Default: trunk and the fractions below
-    #[arg(long = "cover")]
-    joints: Vec<String>,
     /// Sleeves and leg holes: covered fraction of arms, or of an animal's legs
-    #[arg(long, default_value_t = Cut::default().sleeve)]
-    sleeve: f64,
+    #[arg(long)]
+    sleeve: Option<f64>,
     /// Hem: covered fraction of the legs of what walks upright
-    #[arg(long, default_value_t = Cut::default().hem)]
-    hem: f64,
+    #[arg(long)]
+    hem: Option<f64>,
     /// Collar: covered fraction of neck and tail
-    #[arg(long, default_value_t = Cut::default().collar)]
-    collar: f64,
+    #[arg(long)]
+    collar: Option<f64>,
+    /// How much a skirt widens on every side, metres per metre of fall
+    #[arg(long)]
+    flare: Option<f64>,
 }
 
 impl CutArguments {
     /// The cut these arguments describe.
     pub fn cut(&self) -> Cut {
-        let Self { looseness, vertices, ref joints, sleeve, hem, collar } = *self;
-        let joints = Some(joints.clone()).filter(|joints| !joints.is_empty());
-        Cut { looseness, vertices, joints, sleeve, hem, collar }
+        let Self { kind, vertices, looseness, sleeve, hem, collar, flare } = *self;
+        Cut { kind, vertices, looseness, sleeve, hem, collar, flare }
     }
 }
 
@@ -56,15 +59,28 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     make(&arguments.character, &arguments.cut.cut(), &arguments.output)
 }
 
-/// Cuts a garment for the character and writes it.
+/// Cuts a garment for the character, hangs it and writes it.
 pub fn make(character: &Path, cut: &Cut, output: &Path) -> Result<()> {
     // Any rate will do: a garment is cut on the canonical pose.
     let character = gltf::read_character(character, 1.0)?;
-    let mut garment = shell(&character, cut)?;
+    let kind = cut.kind.map_or_else(|| default_kind(&character), Ok)?;
+    let cloth = shell(&character, &Cut { kind: Some(kind), ..cut.clone() })?;
+    eprintln!("{}: cut, {} vertices; hanging it", kind.name(), cloth.mesh.positions.len());
+    let Rest { mut garment, moved, strain } = drape(&character, &cloth)?;
     // In the units of the character's file, so that the two belong together in any tool.
     garment.mesh.positions.iter_mut().for_each(|position| *position /= character.metres_per_unit);
     gltf::write_garment(output, &garment)?;
-    let mesh = &garment.mesh;
-    println!("{}: {} vertices, {} triangles", output.display(), mesh.positions.len(), mesh.triangles.len());
+    let Garment { mesh, pins, .. } = &garment;
+    println!(
+        "{}: {}, {} vertices, {} triangles, {} pins; sank by up to {:.0} mm, edges changed by {:.1} % (95 of 100; at most {:.1} %)",
+        output.display(),
+        kind.name(),
+        mesh.positions.len(),
+        mesh.triangles.len(),
+        pins.len(),
+        1e3 * moved,
+        1e2 * strain[0],
+        1e2 * strain[1]
+    );
     Ok(())
 }

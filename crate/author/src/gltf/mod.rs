@@ -165,7 +165,7 @@ fn garment(file: &File, scale: f64) -> Read<Garment> {
     if welded.mesh.triangles.is_empty() {
         return Err("holds no garment: no mesh with a triangle that has an area".to_string());
     }
-    Ok(Garment { mesh: welded.mesh, surface: welded.surface })
+    Ok(Garment { mesh: welded.mesh, surface: welded.surface, pins: Vec::new() })
 }
 
 #[cfg(test)]

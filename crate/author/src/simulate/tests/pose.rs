@@ -8,7 +8,7 @@ use crate::simulate::{Material, Settings, Simulator, Status, body_frame, path, t
 
 fn simulator(character: &Character, mesh: Mesh, around: u32) -> crate::Result<Simulator> {
     let settings = Settings { attached: (0..around).collect(), ..Settings::default() };
-    Simulator::new(character, &Garment { mesh, surface: Surface::default() }, Material::default(), settings)
+    Simulator::new(character, &Garment { mesh, ..Garment::default() }, Material::default(), settings)
 }
 
 /// Left thigh forward and out, left knee bent, right thigh back; degrees. The hip turned and moved.
