@@ -37,7 +37,7 @@ pub struct Motion {
 
 pub fn run(arguments: &Arguments) -> Result<()> {
     let character = character(&arguments.character, &arguments.motion)?;
-    let garment = gltf::read_garment(&arguments.garment, character.metres_per_unit)?;
+    let (garment, _) = gltf::read_garment(&arguments.garment, character.metres_per_unit)?;
     let names = [file_name(&arguments.character), file_name(&arguments.garment)];
     run_on(&character, &garment, &names, &arguments.output)
 }

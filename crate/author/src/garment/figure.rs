@@ -70,7 +70,8 @@ impl<'a> Figure<'a> {
         let mut toes = 0.0;
         for leg in legs {
             let path = &mut self.anatomy.limbs[leg].path;
-            let level = |k: &usize| (path[*k] - path[k - 1]).normalize_or_zero().dot(trunk) > -0.5;
+            let bone = |k: usize| (path[k] - path[k - 1]).normalize_or_zero();
+            let level = |k: &usize| bone(*k).dot((path[k - 1] - path[0]).normalize_or_zero()) < 0.8;
             let ankle = (2..path.len()).find(level).unwrap_or(path.len()) - 1;
             toes += (path[path.len() - 1] - path[ankle]).dot(side);
             path.truncate(ankle + 1);

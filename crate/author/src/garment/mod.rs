@@ -167,7 +167,8 @@ fn falling(figure: &Figure, pattern: &Pattern, longest: f64, past: f64) -> Optio
         let skin = figure.character.body.positions.iter().zip(share);
         skin.filter(|(_, share)| **share > 0.5).any(|(p, _)| (*p - hang.start).dot(hang.fall) > 0.0)
     };
-    if figure.legs.is_none() || !pattern.hangs.iter().any(|hang| apart.iter().any(|bare| low(&bare.share, hang))) {
+    let drags = || pattern.hangs.iter().any(|hang| apart.iter().any(|bare| low(&bare.share, hang)));
+    if figure.legs.is_none() || pattern.sleeves.is_empty() && !drags() {
         return None;
     }
     let bare: Vec<Bare> = pattern.bare.iter().cloned().chain(apart).collect();
