@@ -1,22 +1,29 @@
 //! `ctsn garment`: a garment for any character.
 
 use anyhow::Result;
-use ctsn_author::garment::{Cut, Kind, Rest, default_kind, drape, shell};
+use ctsn_author::garment::{Cut, Kind, Rest, default_kind, drape, load, shell};
 use ctsn_author::gltf;
 use ctsn_author::rig::Garment;
 use std::path::{Path, PathBuf};
 
-/// Make a garment for any rigged character
+/// Make a garment for any rigged character, or check one of your own
 ///
-/// An offset shell of the body, cut at neck, sleeves and hem: a shirt for what walks upright, a coat for what goes on four legs.
-/// Fractions run along a limb, from where it leaves the trunk (0) to its tip (1).
+/// The garment is cut from a shell of the body, evenly meshed, and hung on the canonical pose. Fractions run along a limb, from where
+/// it leaves the trunk (0) to its tip (1), a leg's being the ankle. Waistbands and collars are pinned to the body: the vertex attribute
+/// _PIN (scalar, 1 = pinned) says where. A garment of your own may have the attribute too.
+///
+/// --check reads a garment of your own and says what is wrong with it: scale, fit, cloth inside the body, inside out, non-manifold
+/// edges, duplicated faces, holes, loose pieces, with the file's vertex numbers. `simulate` and `bake` check the same.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// Rigged character (glTF)
     character: PathBuf,
     /// Where to write the garment (GLB)
-    #[arg(short, long)]
-    output: PathBuf,
+    #[arg(short, long, required_unless_present = "check")]
+    output: Option<PathBuf>,
+    /// Check this garment instead (glTF)
+    #[arg(long, conflicts_with = "output")]
+    check: Option<PathBuf>,
     #[command(flatten)]
     cut: CutArguments,
 }
@@ -56,7 +63,24 @@ impl CutArguments {
 }
 
 pub fn run(arguments: &Arguments) -> Result<()> {
-    make(&arguments.character, &arguments.cut.cut(), &arguments.output)
+    if let Some(garment) = &arguments.check {
+        return check(&arguments.character, garment);
+    }
+    arguments.output.as_ref().map_or(Ok(()), |output| make(&arguments.character, &arguments.cut.cut(), output))
+}
+
+/// Says what is wrong with a garment; fails on what makes it unusable.
+fn check(character: &Path, garment: &Path) -> Result<()> {
+    let character = gltf::read_character(character, 1.0)?;
+    let (cloth, warnings) = load(garment, &character)?;
+    warnings.iter().for_each(|warning| println!("{warning}"));
+    let (vertices, pins) = (cloth.mesh.positions.len(), cloth.pins.len());
+    println!(
+        "{}: {vertices} vertices, {pins} pins; fit to be simulated, {} warnings",
+        garment.display(),
+        warnings.len()
+    );
+    Ok(())
 }
 
 /// Cuts a garment for the character, hangs it and writes it.

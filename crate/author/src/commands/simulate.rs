@@ -2,6 +2,7 @@
 
 use super::{bar, file_name};
 use anyhow::{Result, bail};
+use ctsn_author::garment;
 use ctsn_author::gltf;
 use ctsn_author::ground_truth::{self, Count};
 use ctsn_author::rig::{Character, Garment};
@@ -37,7 +38,8 @@ pub struct Motion {
 
 pub fn run(arguments: &Arguments) -> Result<()> {
     let character = character(&arguments.character, &arguments.motion)?;
-    let (garment, _) = gltf::read_garment(&arguments.garment, character.metres_per_unit)?;
+    let (garment, warnings) = garment::load(&arguments.garment, &character)?;
+    warnings.iter().for_each(|warning| eprintln!("  {}: {warning}", arguments.garment.display()));
     let names = [file_name(&arguments.character), file_name(&arguments.garment)];
     run_on(&character, &garment, &names, &arguments.output)
 }

@@ -54,7 +54,8 @@ fn cut_one(piece: Piece, opening: &Opening, index: usize) -> Piece {
     let Piece { mesh, mut rim } = piece;
     let height: Vec<f64> = mesh.positions.iter().map(|p| opening.past(*p)).collect();
     let bare = (0..height.len()).filter(|&v| height[v] > 0.0);
-    let seed = bare.min_by(|&a, &b| mesh.positions[a].distance(opening.end).total_cmp(&mesh.positions[b].distance(opening.end)));
+    let seed = bare
+        .min_by(|&a, &b| mesh.positions[a].distance(opening.end).total_cmp(&mesh.positions[b].distance(opening.end)));
     let Some(seed) = seed else { return Piece { mesh, rim } };
     let mut gone = vec![false; height.len()];
     let mut around = vec![Vec::new(); height.len()];

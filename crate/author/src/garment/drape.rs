@@ -6,6 +6,9 @@ use crate::Result;
 use crate::rig::{Character, Garment};
 use crate::simulate::{Material, Settings, Simulator};
 
+/// Parts of the body so near to the garment are felt, metres.
+const REACH: f64 = 0.3;
+
 /// A garment at rest, and what draping did to it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rest {
@@ -19,7 +22,8 @@ pub struct Rest {
 
 /// Hangs the garment on the character's canonical pose.
 pub fn drape(character: &Character, garment: &Garment) -> Result<Rest> {
-    let settings = Settings { attached: garment.pins.clone(), ..Settings::default() };
+    // What a cape falls onto is far from where it was cut.
+    let settings = Settings { attached: garment.pins.clone(), reach: REACH, ..Settings::default() };
     let positions = Simulator::new(character, garment, Material::default(), settings)?.drape()?;
     let before = &garment.mesh.positions;
     let moved = positions.iter().zip(before).map(|(now, then)| now.distance(*then)).fold(0.0, f64::max);

@@ -17,7 +17,7 @@ const RISE: f64 = 0.3;
 const FILLS: usize = 4;
 
 /// Half the gap between trouser legs, in voxels.
-const HALF_GAP: f64 = 1.1;
+const HALF_GAP: f64 = 0.7;
 
 /// Scalar field on a regular grid, trilinear in between; x runs fastest.
 pub(super) struct Field {
@@ -99,10 +99,12 @@ impl Field {
     /// Adds tubes around limbs.
     fn unite(&mut self, sleeves: &[Sleeve], clamp: f64) {
         for (sleeve, k) in sleeves.iter().flat_map(|sleeve| (1..sleeve.path.len()).map(move |k| (sleeve, k))) {
-            let ([a, b], [ra, rb]) =
-                ([k - 1, k].map(|k| sleeve.path[k]), [k - 1, k].map(|k| sleeve.radii[k] + clamp));
+            let ([a, b], [ra, rb]) = ([k - 1, k].map(|k| sleeve.path[k]), [k - 1, k].map(|k| sleeve.radii[k] + clamp));
             let [xs, ys, zs] = self.range((a - ra).min(b - rb), (a + ra).max(b + rb));
-            for (z, y, x) in (zs.0..zs.1).flat_map(|z| (ys.0..ys.1).map(move |y| (z, y))).flat_map(|(z, y)| (xs.0..xs.1).map(move |x| (z, y, x))) {
+            for (z, y, x) in (zs.0..zs.1)
+                .flat_map(|z| (ys.0..ys.1).map(move |y| (z, y)))
+                .flat_map(|(z, y)| (xs.0..xs.1).map(move |x| (z, y, x)))
+            {
                 let point = self.point([x, y, z]);
                 let t = ((point - a).dot(b - a) / (b - a).length_squared().max(1e-18)).clamp(0.0, 1.0);
                 let tube = point.distance(a.lerp(b, t)) - (ra + (rb - ra) * t) + clamp;

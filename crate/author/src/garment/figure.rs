@@ -33,7 +33,8 @@ impl<'a> Figure<'a> {
     pub fn new(character: &'a Character, extent: f64) -> Figure<'a> {
         let anatomy = anatomy(character, extent);
         let (spine, forward) = (Vec::new(), DVec3::Z);
-        let mut figure = Figure { character, extent, anatomy, spine, legs: None, arms: None, neck: None, tail: None, forward };
+        let mut figure =
+            Figure { character, extent, anatomy, spine, legs: None, arms: None, neck: None, tail: None, forward };
         if !figure.anatomy.limbs.is_empty() {
             figure.spine = figure.spine();
             figure.find_limbs();

@@ -2,6 +2,7 @@
 //! coordinates. f = |x - body| - looseness, smoothed; garment = {f = 0} between the openings. simulation.md §4.2.
 
 mod anatomy;
+mod check;
 mod curve;
 mod cut;
 mod drape;
@@ -31,6 +32,7 @@ use solid::Solid;
 #[cfg(test)]
 mod test;
 
+pub use check::{Findings, check, load};
 pub use drape::{Rest, drape};
 pub use hull::hull;
 pub use kind::Kind;
@@ -177,7 +179,7 @@ fn falling(figure: &Figure, pattern: &Pattern, longest: f64, past: f64) -> Optio
 
 /// Corners and extent of the bounding box of a sound body, metres.
 fn bounds(character: &Character) -> Result<(DVec3, DVec3, f64)> {
-    check(character)?;
+    check_body(character)?;
     let low = character.body.positions.iter().fold(DVec3::INFINITY, |low, p| low.min(*p));
     let high = character.body.positions.iter().fold(DVec3::NEG_INFINITY, |high, p| high.max(*p));
     Ok((low, high, (high - low).max_element()))
@@ -190,7 +192,7 @@ fn cell(low: DVec3, high: DVec3) -> f64 {
 }
 
 /// Rejects what cannot be dressed.
-fn check(character: &Character) -> Result<()> {
+fn check_body(character: &Character) -> Result<()> {
     let fail = |message: String| Err(Error::Garment(message));
     let body = &character.body;
     if body.triangles.is_empty() || character.joints.is_empty() {

@@ -120,7 +120,9 @@ impl Draft<'_> {
         }
         let down = self.figure.hem(legs, self.preset.hem).normal;
         let point = self.figure.crotch(legs, down) + down * (2.0 * self.loose);
-        pattern.gap = Some([Plane { point, normal: self.figure.lateral(legs) }, Plane { point, normal: down }]);
+        let [a, b] = legs.map(|leg| self.figure.limb(leg).path[0]);
+        let middle = Plane { point: (a + b) / 2.0, normal: self.figure.lateral(legs) };
+        pattern.gap = Some([middle, Plane { point, normal: down }]);
         pattern
     }
 
@@ -135,15 +137,15 @@ impl Draft<'_> {
         let mut width = 0.1 * figure.extent;
         if let Some(arms) = figure.arms {
             let [a, b] = arms.map(|arm| figure.limb(arm).path[0]);
-            width = (a - b).dot(lateral).abs() / 2.0;
+            width = 1.15 * (a - b).dot(lateral).abs() / 2.0;
             for arm in arms {
                 let plane = figure.across(arm, 0.05);
                 pattern.bare.push(Bare { share: figure.share(arm), plane: Some(plane) });
             }
         }
-        let front = Plane { point: top + forward * (0.035 * figure.extent), normal: forward };
+        let front = Plane { point: top + forward * (0.045 * figure.extent), normal: forward };
         let side = |sign: f64| {
-            let normal = (lateral * sign + trunk * (0.6 * preset.flare)).normalize();
+            let normal = (lateral * sign + trunk * preset.flare).normalize();
             Plane { point: top + lateral * (sign * width), normal }
         };
         let mut groups = vec![vec![front], vec![side(1.0)], vec![side(-1.0)], vec![hem]];

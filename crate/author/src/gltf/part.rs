@@ -78,7 +78,16 @@ fn read_primitive(
         None => Vec::new(),
     };
     let colour = painter.paint(&material, &uv, &triangles);
-    Ok(Some(Part { node, skin: skin.map(|(index, _)| index), positions, uv, weights, pinned: Vec::new(), triangles, colour }))
+    Ok(Some(Part {
+        node,
+        skin: skin.map(|(index, _)| index),
+        positions,
+        uv,
+        weights,
+        pinned: Vec::new(),
+        triangles,
+        colour,
+    }))
 }
 
 /// The attribute `_PIN`: more than a half is pinned. [v], or empty without it.

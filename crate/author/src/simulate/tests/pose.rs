@@ -3,7 +3,7 @@
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
 use super::scene::{legs, skirt};
-use crate::rig::{Character, Garment, Mesh, Pose, Surface};
+use crate::rig::{Character, Garment, Mesh, Pose};
 use crate::simulate::{Material, Settings, Simulator, Status, body_frame, path, to_body_frame};
 
 fn simulator(character: &Character, mesh: Mesh, around: u32) -> crate::Result<Simulator> {
