@@ -99,14 +99,19 @@ impl Figure<'_> {
         let path = &self.limb(limb).path;
         let (root, total) = (self.leaves_trunk(limb), arc_length(path));
         let bone = if self.limb(limb).chain.len() > 1 { path[0].distance(path[1]) } else { 0.0 };
+        // A hunched neck leaves the trunk forwards: a collar square to it would bare the chest, so it leans half way.
+        let lean = if self.neck == Some(limb) { self.trunk() } else { DVec3::ZERO };
+        let plane = |s: f64| {
+            let (point, along) = at(path, s);
+            Plane { point, normal: (along + lean).normalize_or(along) }
+        };
         let sections: Vec<(f64, f64)> = (0..=12)
             .map(|k| root + bone * 0.6 * k as f64 / 12.0)
-            .map(|s| (s, section_radius(self.character, &own, at(path, s))))
+            .map(|s| (s, section_radius(self.character, &own, &plane(s))))
             .collect();
         let least = sections.iter().fold(f64::INFINITY, |least, (_, radius)| least.min(*radius));
         let narrow = sections.iter().find(|(_, radius)| *radius <= 1.2 * least).map_or(root, |(s, _)| *s);
-        let (point, normal) = at(path, narrow + fraction * (total - narrow));
-        Plane { point, normal }
+        plane(narrow + fraction * (total - narrow))
     }
 
     /// One plane across both legs.
@@ -117,7 +122,7 @@ impl Figure<'_> {
 
     /// Largest radius of a limb where a plane crosses it, metres.
     pub fn limb_radius(&self, limb: usize, plane: &Plane) -> f64 {
-        section_radius(self.character, &self.share(limb), (plane.point, plane.normal))
+        section_radius(self.character, &self.share(limb), plane)
     }
 
     /// Arc length along the limb's path at which its skin has left the trunk's: where body edges change sides, nearly last.
@@ -137,16 +142,16 @@ impl Figure<'_> {
     }
 }
 
-/// Largest distance from the point at which a plane through it meets skin of the given share, metres; 0 if it does not.
-fn section_radius(character: &Character, own: &[f64], (point, normal): (DVec3, DVec3)) -> f64 {
+/// Largest distance from the plane's point at which it meets skin of the given share, metres; 0 if it does not.
+fn section_radius(character: &Character, own: &[f64], plane: &Plane) -> f64 {
     let positions = &character.body.positions;
     let mut radius = 0.0_f64;
     for triangle in &character.body.triangles {
         for k in 0..3 {
             let (a, b) = (triangle[k] as usize, triangle[(k + 1) % 3] as usize);
-            let (da, db) = ((positions[a] - point).dot(normal), (positions[b] - point).dot(normal));
+            let (da, db) = (plane.past(positions[a]), plane.past(positions[b]));
             if da * db < 0.0 && own[a].min(own[b]) > 0.5 {
-                radius = radius.max(positions[a].lerp(positions[b], da / (da - db)).distance(point));
+                radius = radius.max(positions[a].lerp(positions[b], da / (da - db)).distance(plane.point));
             }
         }
     }
