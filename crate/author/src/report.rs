@@ -80,6 +80,8 @@ pub struct Report {
     pub seconds: Spread,
     /// RMS residual force of the kept poses, in mean vertex weights.
     pub residual: Spread,
+    /// RMS move of the kept poses' vertices over their last iterations, mm.
+    pub drift: Spread,
     /// 99th percentile of the principal stretch, of the kept poses.
     pub stretch_p99: Spread,
     /// Greatest principal stretch of the kept poses.
@@ -88,8 +90,8 @@ pub struct Report {
     pub least_distance: f64,
     /// Cloth inside the body in kept poses.
     pub penetration: Penetration,
-    /// Pairs of triangles that cross each other in kept poses; null when they were not counted.
-    pub crossings: Option<usize>,
+    /// Pairs of triangles that cross each other in kept poses.
+    pub crossings: usize,
     /// How far the truth moves when the pose hardly does; null when it was not measured.
     pub noise_floor: Option<NoiseFloor>,
 }
@@ -127,6 +129,7 @@ impl Report {
             left_out: dataset.rejected.iter().map(left_out).collect(),
             seconds: Spread::of(seconds(folder)?),
             residual: over(|record| record.residual),
+            drift: over(|record| 1e3 * record.drift),
             stretch_p99: over(|record| record.stretch_p99),
             stretch: over(|record| record.stretch),
             least_distance: if kept > 0 { 1e3 * least } else { 0.0 },
@@ -192,6 +195,7 @@ impl std::fmt::Display for Report {
         let rows = [
             ("seconds", self.seconds, 2),
             ("residual", self.residual, 5),
+            ("drift, mm", self.drift, 4),
             ("stretch p99", self.stretch_p99, 3),
             ("stretch", self.stretch, 3),
         ];
@@ -202,10 +206,7 @@ impl std::fmt::Display for Report {
         let Penetration { vertices, poses, depth } = self.penetration;
         writeln!(f, "  body         nearest vertex {:.2} mm in the simulation;", self.least_distance)?;
         writeln!(f, "               {vertices} vertices inside in {poses} poses, at most {depth:.2} mm deep")?;
-        match self.crossings {
-            Some(count) => writeln!(f, "  cloth        {count} pairs of triangles cross each other")?,
-            None => writeln!(f, "  cloth        crossings were not counted")?,
-        }
+        writeln!(f, "  cloth        {} pairs of triangles cross each other", self.crossings)?;
         match &self.noise_floor {
             Some(floor) => write!(f, "{floor}"),
             None => write!(f, "  noise floor  not measured"),

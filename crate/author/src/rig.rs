@@ -79,6 +79,8 @@ pub struct Garment {
     pub mesh: Mesh,
     /// What is drawn of it (seams split, UVs).
     pub surface: Surface,
+    /// Vertices of the cloth mesh that are sprung to the body, as a waistband or a collar is; ascending.
+    pub pins: Vec<u32>,
 }
 
 impl Character {

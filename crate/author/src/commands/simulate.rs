@@ -2,6 +2,7 @@
 
 use super::{bar, file_name, remaining};
 use anyhow::{Result, bail};
+use ctsn_author::garment;
 use ctsn_author::gltf;
 use ctsn_author::ground_truth::{Request, Run, Shard};
 use ctsn_author::report::Report;
@@ -56,7 +57,8 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let Arguments { options, output, shard, .. } = arguments;
     let material = Material::named(&options.material)?;
     let character = character(&arguments.character, options)?;
-    let garment = gltf::read_garment(&arguments.garment, character.metres_per_unit)?;
+    let (garment, warnings) = garment::load(&arguments.garment, &character)?;
+    warnings.iter().for_each(|warning| eprintln!("  {}: {warning}", arguments.garment.display()));
     let names = [file_name(&arguments.character), file_name(&arguments.garment)];
     println!("{} on {}: {} vertices", names[1], names[0], garment.mesh.positions.len());
     let request = Request {
@@ -64,7 +66,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         garment: &garment,
         names: names.each_ref().map(String::as_str),
         material: (&options.material, material),
-        settings: Settings::default(),
+        settings: Settings { attached: garment.pins.clone(), ..Settings::default() },
         shard: *shard,
         twins: options.noise_floor,
     };

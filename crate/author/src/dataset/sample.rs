@@ -19,16 +19,16 @@ pub struct Record {
     pub rejected: Option<String>,
     /// RMS residual force, in mean vertex weights.
     pub residual: f64,
+    /// RMS move of the vertices over the last iterations, metres; zero where the residual alone says that the cloth is at rest.
+    pub drift: f64,
     /// 99th percentile of the principal stretch over the triangles.
-    #[serde(default)]
     pub stretch_p99: f64,
     /// Greatest stretch, principal.
     pub stretch: f64,
     /// Least signed distance to the body, metres.
     pub distance: f64,
-    /// Pairs of cloth triangles that cross each other; `None` when they were not counted.
-    #[serde(default)]
-    pub crossings: Option<usize>,
+    /// Pairs of cloth triangles that cross each other.
+    pub crossings: usize,
 }
 
 impl Record {
@@ -45,10 +45,11 @@ impl Record {
             frame,
             rejected,
             residual: finite(outcome.residual),
+            drift: finite(outcome.drift),
             stretch_p99: finite(outcome.stretch_p99),
             stretch: finite(outcome.stretch_max),
             distance: finite(outcome.least_distance),
-            crossings: None,
+            crossings: outcome.crossings,
         }
     }
 }

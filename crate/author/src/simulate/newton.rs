@@ -130,6 +130,7 @@ impl<'a> Solver<'a> {
         Probe { residual, least_distance, inside: self.inside, drift: f64::INFINITY }
     }
 
+    #[cfg(test)]
     /// Least distance of cloth from cloth among the pairs that are near, metres.
     pub fn nearest_layers(&self) -> f64 {
         let distance = |pair: &Pair| pair.distance(&self.positions);
