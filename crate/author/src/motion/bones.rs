@@ -22,10 +22,7 @@ pub struct Turns {
 impl Bones {
     /// Those of a character.
     pub fn new(character: &Character) -> Bones {
-        Bones {
-            parents: character.joints.iter().map(|joint| joint.parent).collect(),
-            bind: character.canonical_pose(),
-        }
+        Bones { parents: character.joints.iter().map(|joint| joint.parent).collect(), bind: character.canonical_pose() }
     }
 
     /// No turn at all.

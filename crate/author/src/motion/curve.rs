@@ -45,14 +45,15 @@ pub fn through<P: Channels>(keys: &[(f64, P)], period: f64, time: f64) -> P {
 }
 
 /// The Halton (1960) sequence: sample `index` (from 1) of dimension `dimension`, in [0, 1). Covers a box more evenly than
-/// random numbers. Dimensions beyond the table of primes repeat it.
+/// random numbers. Leaped by 409 (Kocis & Whiten 1997): neighbours in high dimensions are ramps otherwise. Dimensions
+/// beyond the table of primes repeat it.
 pub fn halton(index: usize, dimension: usize) -> f64 {
     const PRIMES: [usize; 30] = [
-        2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61, 67, 71, 73, 79, 83, 89, 97, 101, 103, 107, 109,
-        113,
+        2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61, 67, 71, 73, 79, 83, 89, 97, 101, 103, 107,
+        109, 113,
     ];
     let base = PRIMES[dimension % PRIMES.len()];
-    let (mut left, mut share, mut sum) = (index, 1.0, 0.0);
+    let (mut left, mut share, mut sum) = (409 * index, 1.0, 0.0);
     while left > 0 {
         share /= base as f64;
         sum += share * (left % base) as f64;
