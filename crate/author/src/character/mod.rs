@@ -98,4 +98,6 @@ fn edge_length(lofts: &[Loft], p: DVec3) -> f64 {
 }
 
 #[cfg(test)]
+mod animal_tests;
+#[cfg(test)]
 pub(crate) mod tests;

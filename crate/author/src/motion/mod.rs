@@ -46,3 +46,6 @@ fn sample(name: &str, period: f64, rate: f64, pose: impl Fn(f64) -> Pose) -> Cli
     let poses = (0..=frames as usize).map(|frame| pose(period * frame as f64 / frames)).collect();
     Clip { name: name.to_string(), rate: frames / period, poses }
 }
+
+#[cfg(test)]
+mod tests;

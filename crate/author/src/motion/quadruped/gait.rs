@@ -57,10 +57,10 @@ const TROT: Gait = Gait {
 
 const GALLOP: Gait = Gait {
     name: "gallop",
-    stride: (0.42, 12),
+    stride: (0.46, 11),
     phase: [0.0, 0.10, 0.62, 0.52],
-    step: [0.30, 0.88, 0.30],
-    hips: [-0.06, 0.060, 0.0],
+    step: [0.32, 0.80, 0.28],
+    hips: [-0.09, 0.055, 0.0],
     bound: [9.0, 26.0],
     swing: [1.5, 1.0],
     head: [-22.0, 3.0, -6.0],
@@ -94,8 +94,8 @@ pub const GAITS: &[Gait] = &[
         ..WALK
     },
     GALLOP,
-    Gait { name: "turn left", stride: (0.95, 6), turn: 30.0, ..WALK },
-    Gait { name: "turn right", stride: (0.95, 6), turn: -30.0, ..WALK },
+    Gait { name: "turn left", stride: (0.95, 6), hips: [-0.07, 0.010, 0.018], turn: 30.0, ..WALK },
+    Gait { name: "turn right", stride: (0.95, 6), hips: [-0.07, 0.010, 0.018], turn: -30.0, ..WALK },
     Gait { name: "trot left", stride: (0.52, 10), turn: 22.0, ..TROT },
     Gait { name: "trot right", stride: (0.52, 10), turn: -22.0, ..TROT },
     Gait {
