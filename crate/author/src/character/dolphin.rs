@@ -15,7 +15,7 @@ const PALE: [f32; 3] = [0.50, 0.54, 0.56];
 const BLACK: [f32; 3] = [0.010, 0.012, 0.014];
 
 /// The table of the dolphin.
-pub const DOLPHIN: Figure = Figure { joints: JOINTS, parts: PARTS, cell: 0.009, colour: GREY };
+pub const DOLPHIN: Figure = Figure { joints: JOINTS, parts: PARTS, cell: 0.006, colour: GREY };
 
 const JOINTS: &[JointRow] = &[
     ("Hips", "", [0.0, AXIS, 0.00]),
@@ -120,7 +120,7 @@ const PARTS: &[Part] = &[
         caps: [0.05, 0.020],
         exponent: 2.0,
         blend: 0.06,
-        edge: 0.018,
+        edge: 0.013,
         joints: &[("Hips", 0.0, 0.01)],
         ..PART
     },
@@ -139,7 +139,7 @@ const PARTS: &[Part] = &[
         caps: [0.05, 0.020],
         exponent: 2.0,
         blend: 0.035,
-        edge: 0.018,
+        edge: 0.013,
         joints: &[("Spine1", -0.05, 0.01), ("LeftFin", 0.035, 0.050)],
         ..PART
     },
@@ -158,16 +158,16 @@ const PARTS: &[Part] = &[
         caps: [0.03, 0.018],
         exponent: 2.0,
         blend: 0.03,
-        edge: 0.018,
+        edge: 0.012,
         joints: FLUKE,
         ..PART
     },
     // Blowhole.
     Part { role: Role::Carve, blend: 0.008, edge: 0.012, ..ball([0.0, 0.652, 0.690], [0.016, 0.010, 0.009], HEAD) },
     // Pale belly and throat, a paler flank, the mouth's line.
-    paint([0.0, 0.330, 0.300], [0.150, 0.105, 0.640], PALE, 0.090),
-    paint([0.0, 0.395, 0.820], [0.110, 0.066, 0.220], PALE, 0.035),
-    paint([0.0, 0.330, -0.200], [0.090, 0.080, 0.420], PALE, 0.090),
+    paint([0.0, 0.330, 0.260], [0.175, 0.120, 0.700], PALE, 0.090),
+    paint([0.0, 0.390, 0.820], [0.120, 0.082, 0.240], PALE, 0.035),
+    paint([0.0, 0.330, -0.250], [0.100, 0.110, 0.460], PALE, 0.090),
     // Eyes.
     Part {
         shell: 1,

@@ -43,7 +43,7 @@ const JOINTS: &[JointRow] = &[
     ("Tail4", "Tail3", [0.0, 0.1335, -0.5324]),
 ];
 
-const EYE: [Part; 3] = eye([0.0265, 0.4925, 0.2480], [0.62, 0.14, 0.78], [0.0100, 0.0036, 0.0062], [0.42, 0.16, 0.015]);
+const EYE: [Part; 3] = eye([0.0258, 0.4920, 0.2468], [0.62, 0.14, 0.78], [0.0100, 0.0046, 0.0068], [0.42, 0.16, 0.015]);
 
 const PARTS: &[Part] = &[
     TRUNK,
@@ -151,16 +151,16 @@ const PARTS: &[Part] = &[
         ],
         ..PART
     },
-    paw(BACK_PAW, PAW_SIZE, RED, BACK_TOES),
-    toe(BACK_PAW, PAW_SIZE, 0, RED, BACK_TOES),
-    toe(BACK_PAW, PAW_SIZE, 1, RED, BACK_TOES),
-    toe(BACK_PAW, PAW_SIZE, 2, RED, BACK_TOES),
-    toe(BACK_PAW, PAW_SIZE, 3, RED, BACK_TOES),
-    paw(FRONT_PAW, PAW_SIZE, RED, FRONT_TOES),
-    toe(FRONT_PAW, PAW_SIZE, 0, RED, FRONT_TOES),
-    toe(FRONT_PAW, PAW_SIZE, 1, RED, FRONT_TOES),
-    toe(FRONT_PAW, PAW_SIZE, 2, RED, FRONT_TOES),
-    toe(FRONT_PAW, PAW_SIZE, 3, RED, FRONT_TOES),
+    paw(BACK_PAW, PAW_SIZE, BLACK, BACK_TOES),
+    toe(BACK_PAW, PAW_SIZE, 0, BLACK, BACK_TOES),
+    toe(BACK_PAW, PAW_SIZE, 1, BLACK, BACK_TOES),
+    toe(BACK_PAW, PAW_SIZE, 2, BLACK, BACK_TOES),
+    toe(BACK_PAW, PAW_SIZE, 3, BLACK, BACK_TOES),
+    paw(FRONT_PAW, PAW_SIZE, BLACK, FRONT_TOES),
+    toe(FRONT_PAW, PAW_SIZE, 0, BLACK, FRONT_TOES),
+    toe(FRONT_PAW, PAW_SIZE, 1, BLACK, FRONT_TOES),
+    toe(FRONT_PAW, PAW_SIZE, 2, BLACK, FRONT_TOES),
+    toe(FRONT_PAW, PAW_SIZE, 3, BLACK, FRONT_TOES),
     // Brush.
     Part {
         start: [0.0, 0.350, -0.262],
@@ -196,7 +196,7 @@ const PARTS: &[Part] = &[
         sections: &[[0.0, 0.0, 0.030, 0.020, 0.020], [0.028, 0.0, 0.017, 0.009, 0.010]],
         caps: [0.02, 0.020],
         blend: 0.02,
-        edge: 0.009,
+        edge: 0.0075,
         joints: HEAD,
         ..PART
     },
@@ -204,18 +204,19 @@ const PARTS: &[Part] = &[
     // Brow.
     Part { blend: 0.016, edge: 0.0075, ..ball([0.020, 0.503, 0.240], [0.015, 0.008, 0.018], HEAD) },
     // Lower jaw.
-    Part { blend: 0.012, edge: 0.0065, ..ball([0.0, 0.4505, 0.278], [0.012, 0.008, 0.034], HEAD) },
-    // Eye socket.
-    Part { role: Role::Carve, blend: 0.006, edge: 0.0055, ..ball([0.0290, 0.4935, 0.2515], [0.0095; 3], HEAD) },
+    Part { blend: 0.012, edge: 0.0052, ..ball([0.0, 0.4505, 0.278], [0.012, 0.008, 0.034], HEAD) },
+    // Eye socket, then the lid over it.
+    Part { role: Role::Carve, blend: 0.006, edge: 0.0048, ..ball([0.0285, 0.4930, 0.2505], [0.0095; 3], HEAD) },
+    Part { blend: 0.004, edge: 0.0042, ..ball([0.0262, 0.5018, 0.2454], [0.0112, 0.0054, 0.0116], HEAD) },
     EAR,
     // Hollow of the ear.
     Part {
-        start: [0.0415, 0.512, 0.2115],
+        start: [0.0415, 0.511, 0.2095],
         role: Role::Carve,
         sections: &[[0.004, 0.0, 0.0150, 0.012, 0.0120], [0.050, 0.0, 0.0050, 0.006, 0.0060]],
-        caps: [0.010, 0.012],
+        caps: [0.010, 0.010],
         blend: 0.006,
-        edge: 0.006,
+        edge: 0.0048,
         ..EAR
     },
     // White: chest and belly, cheeks and chin, tip of the brush.
@@ -223,7 +224,7 @@ const PARTS: &[Part] = &[
     paint([0.0, 0.235, 0.000], [0.040, 0.050, 0.200], WHITE, 0.022),
     paint([0.0, 0.375, 0.185], [0.044, 0.060, 0.050], WHITE, 0.020),
     paint([0.052, 0.448, 0.235], [0.038, 0.026, 0.045], WHITE, 0.012),
-    paint([0.0, 0.436, 0.270], [0.050, 0.025, 0.085], WHITE, 0.008),
+    paint([0.0, 0.436, 0.270], [0.050, 0.025, 0.085], WHITE, 0.010),
     paint([0.0, 0.080, -0.590], [0.080, 0.085, 0.080], WHITE, 0.030),
     // Black: socks, backs of the ears.
     paint([0.048, 0.035, 0.105], [0.036, 0.100, 0.060], BLACK, 0.040),
@@ -231,7 +232,7 @@ const PARTS: &[Part] = &[
     paint([0.058, 0.570, 0.176], [0.040, 0.042, 0.022], BLACK, 0.010),
     paint([0.0415, 0.535, 0.2115], [0.014, 0.032, 0.012], [0.50, 0.36, 0.27], 0.006),
     // Nose.
-    Part { shell: 2, edge: 0.0030, colour: Some(BLACK), ..ball([0.0, 0.4690, 0.3415], [0.0078, 0.0064, 0.0070], HEAD) },
+    Part { shell: 2, edge: 0.0030, colour: Some(BLACK), ..ball([0.0, 0.4680, 0.3380], [0.0074, 0.0060, 0.0064], HEAD) },
     EYE[0],
     EYE[1],
     EYE[2],
@@ -315,7 +316,7 @@ const MUZZLE: Part = Part {
     ],
     caps: [0.02, 0.018],
     blend: 0.026,
-    edge: 0.0070,
+    edge: 0.0052,
     joints: HEAD,
     ..PART
 };
@@ -327,11 +328,11 @@ const EAR: Part = Part {
     sections: &[
         [0.000, 0.0, 0.024, 0.012, 0.010],
         [0.025, 0.0, 0.0205, 0.010, 0.008],
-        [0.062, 0.0, 0.0060, 0.005, 0.004],
+        [0.048, 0.0, 0.0115, 0.007, 0.006],
     ],
-    caps: [0.015, 0.014],
+    caps: [0.015, 0.026],
     blend: 0.014,
-    edge: 0.0075,
+    edge: 0.0048,
     joints: &[("Head", 0.0, 0.01), ("LeftEar", 0.010, 0.012)],
     ..PART
 };

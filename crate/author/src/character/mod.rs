@@ -91,7 +91,7 @@ fn edge_length(lofts: &[Loft], p: DVec3) -> f64 {
     let share = |loft: &Loft| (loft.edge, (-loft.distance(p).max(0.0) / 0.01).exp());
     let (sum, weight) = lofts
         .iter()
-        .filter(|loft| loft.near(p))
+        .filter(|loft| loft.role != Role::Paint && loft.near(p))
         .map(share)
         .fold((0.0, 1e-12), |(s, w), (edge, k)| (s + edge * k, w + k));
     if weight > 1e-9 { sum / weight } else { 0.02 }
