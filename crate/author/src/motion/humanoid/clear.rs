@@ -112,7 +112,7 @@ fn thickness(skin: &[DVec3], from: DVec3, to: DVec3) -> f64 {
     total / skin.len().max(1) as f64
 }
 
-/// Spheres side by side in each slab of that height of a body part, as deep as the slab.
+/// Spheres in a row in each slab of that height of a body part, as deep or as wide as the slab.
 fn fill(skin: &[DVec3], slab: f64) -> Vec<(DVec3, f64)> {
     let bounds = |points: &mut dyn Iterator<Item = DVec3>| {
         points.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)))
@@ -131,11 +131,11 @@ fn fill(skin: &[DVec3], slab: f64) -> Vec<(DVec3, f64)> {
         } else {
             (top.y + bottom.y) / 2.0
         };
-        let spare = half - radius;
-        let across = |share: f64| (DVec3::new(middle.x + share * spare.x, y, middle.z), radius);
+        // One of the two is zero: a trunk is wider than deep, a head with its nose deeper than wide.
+        let spare = DVec3::new(half.x - radius, 0.0, half.z - radius);
         if radius.is_finite() && radius > 0.0 {
-            let sides: &[f64] = if spare.x > 0.3 * radius { &[-1.0, 0.0, 1.0] } else { &[0.0] };
-            balls.extend(sides.iter().map(|&share| across(share)));
+            let sides: &[f64] = if spare.length() > 0.05 * radius { &[-1.0, 0.0, 1.0] } else { &[0.0] };
+            balls.extend(sides.iter().map(|&share| (middle.with_y(y) + share * spare, radius)));
         }
     }
     balls
