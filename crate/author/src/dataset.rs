@@ -1,15 +1,20 @@
 //! Simulated truth on disk: a folder with `setup.safetensors` (cloth, body, joints) and one file per pose under `poses/`.
 //! One file per pose, written whole or not at all, makes the simulation resumable and lets shards merge by copying.
 
-use crate::rig::SkinWeights;
+mod sample;
+
+use crate::rig::{self, Character, Joint, Mesh, SkinWeights, Surface as Drawn};
 use crate::{Error, Result};
 use ctsn_core::file::{Tensor, Tensors};
 use ctsn_core::model::Surface;
+use kiddo::{ImmutableKdTree, SquaredEuclidean};
+pub(crate) use sample::paths;
+pub use sample::{Record, Sample, pose_path, twin_path};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
 /// What the poses of a dataset have in common, besides the meshes.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Description {
     /// Character file name.
     pub character: String,
@@ -19,14 +24,20 @@ pub struct Description {
     pub rate: f64,
     /// Clip names; poses name their clip by index.
     pub clips: Vec<String>,
+    /// Frames per clip; empty in a dataset of an older version.
+    #[serde(default)]
+    pub frames: Vec<usize>,
     /// Joint names.
     pub joints: Vec<String>,
     /// Index of the hip.
     pub root: usize,
     /// `B_j⁻¹`, row-major 3×4.
     pub inverse_bind: Vec<Vec<f32>>,
-    /// Material, as the simulator names it.
+    /// Name and constants of the material.
     pub material: String,
+    /// The simulator's numerical settings: another path is another truth.
+    #[serde(default)]
+    pub settings: String,
 }
 
 /// Everything about a dataset but its poses.
@@ -50,36 +61,6 @@ pub struct Setup {
     pub body_weights: Vec<SkinWeights>,
 }
 
-/// How the simulation of one pose ended.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Record {
-    /// Index into the description's clips.
-    pub clip: usize,
-    /// Frame within the clip.
-    pub frame: usize,
-    /// Why the pose was left out; `None` when it converged.
-    pub rejected: Option<String>,
-    /// RMS residual force, in mean vertex weights.
-    pub residual: f64,
-    /// Greatest stretch, principal.
-    pub stretch: f64,
-    /// Least signed distance to the body, metres.
-    pub distance: f64,
-    /// Seconds of computing.
-    pub seconds: f64,
-}
-
-/// One simulated pose.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Sample {
-    /// Where it came from and how it ended.
-    pub record: Record,
-    /// `G_j` [J, 3, 4], row-major, world.
-    pub joints: Vec<f32>,
-    /// True positions in the body frame [n, 3].
-    pub truth: Vec<f32>,
-}
-
 /// A dataset in memory; rejected poses are left out of `samples` and counted.
 #[derive(Clone, Debug)]
 pub struct Dataset {
@@ -87,8 +68,8 @@ pub struct Dataset {
     pub setup: Setup,
     /// Accepted poses, in the order of clip and frame.
     pub samples: Vec<Sample>,
-    /// How many poses were left out.
-    pub rejected: usize,
+    /// The poses that were left out, in the same order.
+    pub rejected: Vec<Record>,
 }
 
 /// Which poses of a dataset.
@@ -105,23 +86,18 @@ fn setup_path(folder: &Path) -> PathBuf {
     folder.join("setup.safetensors")
 }
 
-/// Path of one pose of dataset `folder`.
-pub fn pose_path(folder: &Path, clip: usize, frame: usize) -> PathBuf {
-    folder.join("poses").join(format!("{clip:03}-{frame:05}.safetensors"))
-}
-
 /// Reads a whole file.
 pub fn read(path: &Path) -> Result<Vec<u8>> {
     std::fs::read(path).map_err(|source| Error::Io { path: path.to_owned(), source })
 }
 
-/// Writes a whole file or nothing: first beside it, then moved into place.
+/// Writes a whole file or nothing: first beside it, under a name that no other process uses, then moved into place.
 pub fn write(path: &Path, bytes: &[u8]) -> Result<()> {
     let io = |source| Error::Io { path: path.to_owned(), source };
     if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
         std::fs::create_dir_all(folder).map_err(io)?;
     }
-    let partial = path.with_extension("partial");
+    let partial = path.with_extension(format!("partial-{}", std::process::id()));
     std::fs::write(&partial, bytes).map_err(io)?;
     std::fs::rename(&partial, path).map_err(io)
 }
@@ -206,38 +182,65 @@ impl Setup {
         })
     }
 
-    /// Refuses to go on with a dataset made from something else.
-    pub fn check_same(&self, other: &Self, folder: &Path) -> Result<()> {
-        let mut expected = other.clone();
-        expected.template.clone_from(&self.template);
-        if *self == expected {
+    /// Refuses to go on with a dataset made from something else than `wanted`, and says what differs.
+    pub fn check_same(&self, wanted: &Self, folder: &Path) -> Result<()> {
+        let mut same = wanted.clone();
+        same.template.clone_from(&self.template);
+        if *self == same {
             return Ok(());
         }
-        let reason = "holds another character, garment, rate or material; name another folder, or delete this one";
-        Err(Error::File { path: folder.to_owned(), reason: reason.to_owned() })
-    }
-}
-
-impl Sample {
-    /// Writes one pose of dataset `folder`.
-    pub fn write(&self, folder: &Path) -> Result<()> {
-        let mut file = Tensors::default();
-        file.metadata.insert("record".to_owned(), to_json(&self.record)?);
-        file.tensors.insert("pose.joints".to_owned(), Tensor::f32(&[self.joints.len() / 12, 3, 4], &self.joints));
-        file.tensors.insert("truth.positions".to_owned(), Tensor::f32(&[self.truth.len() / 3, 3], &self.truth));
-        write(&pose_path(folder, self.record.clip, self.record.frame), &file.to_bytes())
-    }
-
-    /// Reads one pose of `joints` joints and `vertices` cloth vertices.
-    pub fn read(path: &Path, joints: usize, vertices: usize) -> Result<Self> {
-        let named = |reason: String| Error::File { path: path.to_owned(), reason };
-        let file = tensors(path)?;
-        let record = json(&file, "record").map_err(|error| named(error.to_string()))?;
-        let values = |name: &str, shape: &[Option<usize>]| {
-            file.f32(name, shape).map(|values| values.0).map_err(|error| named(error.to_string()))
+        let (found, wanted) = (&self.description, &wanted.description);
+        let texts = |found: &str, wanted: &str| {
+            let parts = found.split(", ").zip(wanted.split(", ")).find(|(found, wanted)| found != wanted);
+            let (found, wanted) = parts.unwrap_or((found, wanted));
+            format!("wanted {wanted:?}, found {found:?}")
         };
-        let pose = values("pose.joints", &[Some(joints), Some(3), Some(4)])?;
-        Ok(Self { record, joints: pose, truth: values("truth.positions", &[Some(vertices), Some(3)])? })
+        let reason = if found.material != wanted.material {
+            format!("another material: {}", texts(&found.material, &wanted.material))
+        } else if found.settings != wanted.settings {
+            format!("other settings of the simulator: {}", texts(&found.settings, &wanted.settings))
+        } else if (found.rate, &found.clips, &found.frames) != (wanted.rate, &wanted.clips, &wanted.frames) {
+            let motion = |of: &Description| format!("{} clips at {} poses a second", of.clips.len(), of.rate);
+            format!("other motion: wanted {}, found {}", motion(wanted), motion(found))
+        } else {
+            let pair = |of: &Description| format!("{} on {}", of.garment, of.character);
+            format!("another character or garment: wanted {}, found {}", pair(wanted), pair(found))
+        };
+        let reason = format!("holds poses of {reason}; name another folder, or delete this one");
+        Err(Error::File { path: folder.to_owned(), reason })
+    }
+
+    /// Index of the body vertex nearest to each cloth vertex [n]; its skin weights are `W_C^I`. network.md §3.
+    pub fn nearest(&self) -> Result<Vec<usize>> {
+        let tree: ImmutableKdTree<f32, 3> = ImmutableKdTree::new_from_slice(self.body.as_chunks::<3>().0)
+            .map_err(|error| Error::Dataset(format!("body vertices: {error}")))?;
+        let query =
+            |vertex: &[f32; 3]| tree.query(vertex).nearest_one::<SquaredEuclidean<f32>>().execute().item as usize;
+        Ok(self.template.as_chunks::<3>().0.iter().map(query).collect())
+    }
+
+    /// The body and its joints, without clips and parents.
+    pub fn character(&self) -> Result<Character> {
+        let Description { joints, inverse_bind, root, .. } = &self.description;
+        let joint = |(name, bind): (&String, &Vec<f32>)| {
+            let inverse_bind = rig::affine(bind.as_slice().try_into().ok()?);
+            Some(Joint { name: name.clone(), parent: None, inverse_bind })
+        };
+        let found: Option<Vec<Joint>> = joints.iter().zip(inverse_bind).map(joint).collect();
+        let wrong =
+            || Error::Dataset(format!("wanted {} inverse binds of 12 numbers and a root among them", joints.len()));
+        Ok(Character {
+            joints: found.filter(|list| list.len() == joints.len() && *root < list.len()).ok_or_else(wrong)?,
+            root: *root,
+            body: Mesh {
+                positions: rig::vertices(&self.body),
+                triangles: self.body_triangles.as_chunks::<3>().0.to_vec(),
+            },
+            weights: self.body_weights.clone(),
+            surface: Drawn::default(),
+            clips: Vec::new(),
+            metres_per_unit: 1.0,
+        })
     }
 }
 
@@ -249,26 +252,17 @@ impl Dataset {
             reason: "holds no setup.safetensors; run `ctsn simulate` first".to_owned(),
         };
         let setup = Setup::read(folder)?.ok_or_else(missing)?;
-        let poses = folder.join("poses");
-        let io = |source| Error::Io { path: poses.clone(), source };
-        let mut paths = Vec::new();
-        for entry in std::fs::read_dir(&poses).map_err(io)? {
-            paths.push(entry.map_err(io)?.path());
-        }
-        paths.retain(|path| path.extension().is_some_and(|extension| extension == "safetensors"));
-        paths.sort();
         let sizes = (setup.description.joints.len(), setup.template.len() / 3);
-        let mut samples = Vec::new();
-        for path in &paths {
-            samples.push(Sample::read(path, sizes.0, sizes.1)?);
+        let (mut samples, mut rejected) = (Vec::new(), Vec::new());
+        for path in paths(&folder.join("poses"))? {
+            let sample = Sample::read(&path, sizes.0, sizes.1)?;
+            if sample.record.rejected.is_none() { samples.push(sample) } else { rejected.push(sample.record) }
         }
-        let all = samples.len();
-        samples.retain(|sample| sample.record.rejected.is_none());
         let clips = setup.description.clips.len();
-        if let Some(sample) = samples.iter().find(|sample| sample.record.clip >= clips) {
-            return Err(Error::Dataset(format!("a pose names clip {}, there are {clips}", sample.record.clip)));
+        if let Some(record) = samples.iter().map(|sample| &sample.record).chain(&rejected).find(|r| r.clip >= clips) {
+            return Err(Error::Dataset(format!("a pose names clip {}, there are {clips}", record.clip)));
         }
-        Ok(Self { rejected: all - samples.len(), setup, samples })
+        Ok(Self { rejected, setup, samples })
     }
 
     /// The samples of one split: every clip is cut at 90 % of its time.

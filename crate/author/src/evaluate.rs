@@ -1,9 +1,8 @@
 //! Errors of a model on simulated poses it has not seen. network.md §7.
 //! E_dist: mean distance of vertices; E_norm: mean angle between vertex normals; penetration: vertices inside the posed body.
 
-use crate::dataset::{Dataset, Sample, Split};
-use crate::ground_truth::{affine, vertices};
-use crate::rig::{Character, Joint, Mesh, Pose, Surface};
+use crate::dataset::{Dataset, Sample, Setup, Split};
+use crate::rig::{self, Mesh, Pose, vertices};
 use crate::simulate::BodyDistance;
 use crate::{Error, Result};
 use ctsn_core::cpu::{Level, normals::normals};
@@ -71,11 +70,11 @@ pub fn evaluate(model: &HostModel, dataset: &Dataset, split: Split) -> Result<Re
     if wanted != found || model.triangles != dataset.setup.triangles {
         return Err(Error::Dataset(format!("its cloth is not the model's: {} and {} vertices", found / 3, wanted / 3)));
     }
-    let body = body_distance(dataset)?;
+    let body = body_distance(&dataset.setup)?;
     let mut predictor = Predictor::from_model(model.clone(), Level::new());
     let mut frames = [Vec::new(), Vec::new(), Vec::new(), Vec::new()];
     for sample in &samples {
-        let pose: Pose = sample.joints.as_chunks::<12>().0.iter().map(|joint| affine(joint)).collect();
+        let pose = rig::pose(&sample.joints);
         for (list, streams) in frames.iter_mut().zip([Streams::Both, Streams::Skeleton, Streams::None]) {
             predictor.predict_row_major(&sample.joints, streams)?;
             let predicted = to_body(&predictor, predictor.positions());
@@ -85,34 +84,44 @@ pub fn evaluate(model: &HostModel, dataset: &Dataset, split: Split) -> Result<Re
     }
     let [network, skeleton, skinning, truth] = frames.map(|list| errors(&list));
     let ratio = network.distance.mean / skinning.distance.mean;
-    Ok(Report { frames: samples.len(), rejected: dataset.rejected, network, skeleton, skinning, truth, ratio })
+    Ok(Report { frames: samples.len(), rejected: dataset.rejected.len(), network, skeleton, skinning, truth, ratio })
 }
 
 /// World positions -> body frame, by the inverse of the predictor's own `N⁻¹`.
 fn to_body(predictor: &Predictor, positions: &[f32]) -> Vec<DVec3> {
     let transforms = &predictor.activations().body_frame;
-    let into: DAffine3 = affine(&transforms[transforms.len() - 12..]).inverse();
+    let into: DAffine3 = rig::pose(transforms).last().map_or(DAffine3::IDENTITY, DAffine3::inverse);
     vertices(positions).into_iter().map(|position| into.transform_point3(position)).collect()
 }
 
 fn compare(predicted: &[DVec3], sample: &Sample, model: &HostModel, body: &BodyDistance, pose: &Pose) -> Frame {
-    let truth = vertices(&sample.truth);
-    let count = truth.len() as f64;
-    let distance = predicted.iter().zip(&truth).map(|(p, g)| p.distance(*g)).sum::<f64>() / count;
-    let [a, b] = [predicted, &truth].map(|positions| vertex_normals(positions, &model.triangles));
-    let angle = |(a, b): (&DVec3, &DVec3)| a.dot(*b).clamp(-1.0, 1.0).acos().to_degrees();
-    let normal = a.iter().zip(&b).map(angle).sum::<f64>() / count;
+    let (distance, normal) = differences(predicted, &vertices(&sample.truth), &model.triangles);
     let signed = body.signed(pose, predicted);
     let inside = signed.iter().filter(|distance| **distance < 0.0).count() as f64;
     let depth = signed.iter().fold(0.0, |depth: f64, distance| depth.max(-distance));
-    Frame { distance, normal, penetrating: inside / count, depth }
+    Frame { distance, normal, penetrating: inside / predicted.len() as f64, depth }
+}
+
+/// Mean distance of vertices in metres and mean angle between vertex normals in degrees, of two states [n] of one cloth.
+pub fn differences(a: &[DVec3], b: &[DVec3], triangles: &[u32]) -> (f64, f64) {
+    let count = a.len() as f64;
+    let distance = a.iter().zip(b).map(|(a, b)| a.distance(*b)).sum::<f64>() / count;
+    let angle = |(a, b): (&DVec3, &DVec3)| a.dot(*b).clamp(-1.0, 1.0).acos().to_degrees();
+    let [a, b] = [a, b].map(|positions| vertex_normals(positions, triangles));
+    (distance, a.iter().zip(&b).map(angle).sum::<f64>() / count)
 }
 
 fn vertex_normals(positions: &[DVec3], triangles: &[u32]) -> Vec<DVec3> {
-    let positions = crate::ground_truth::numbers(positions);
+    let positions = rig::numbers(positions);
     let mut result = vec![0.0; positions.len()];
     normals(&positions, triangles, &mut result);
     vertices(&result)
+}
+
+/// The dataset's own body around its cloth, so that nothing but the dataset is needed to judge what touches it.
+pub fn body_distance(setup: &Setup) -> Result<BodyDistance> {
+    let cloth = Mesh { positions: vertices(&setup.template), triangles: setup.triangles.as_chunks::<3>().0.to_vec() };
+    BodyDistance::new(&setup.character()?, &cloth)
 }
 
 fn errors(frames: &[Frame]) -> Errors {
@@ -128,28 +137,6 @@ fn errors(frames: &[Frame]) -> Errors {
         penetrating: statistic(|frame| frame.penetrating).mean,
         depth: frames.iter().map(|frame| frame.depth).fold(0.0, f64::max),
     }
-}
-
-/// The dataset's own body, so that evaluation needs no file but the dataset and the model.
-fn body_distance(dataset: &Dataset) -> Result<BodyDistance> {
-    let setup = &dataset.setup;
-    let mesh = |positions: &[f32], triangles: &[u32]| Mesh {
-        positions: vertices(positions),
-        triangles: triangles.as_chunks::<3>().0.to_vec(),
-    };
-    let joints = setup.description.joints.iter().zip(&setup.description.inverse_bind);
-    let joint =
-        |(name, bind): (&String, &Vec<f32>)| Joint { name: name.clone(), parent: None, inverse_bind: affine(bind) };
-    let character = Character {
-        joints: joints.map(joint).collect(),
-        root: setup.description.root,
-        body: mesh(&setup.body, &setup.body_triangles),
-        weights: setup.body_weights.clone(),
-        surface: Surface::default(),
-        clips: Vec::new(),
-        metres_per_unit: 1.0,
-    };
-    BodyDistance::new(&character, &mesh(&setup.template, &setup.triangles))
 }
 
 impl std::fmt::Display for Report {

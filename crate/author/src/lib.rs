@@ -9,6 +9,7 @@ pub mod gltf;
 pub mod ground_truth;
 pub mod motion;
 pub mod render;
+pub mod report;
 pub mod rig;
 pub mod simulate;
 pub mod synthetic;

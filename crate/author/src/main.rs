@@ -3,7 +3,7 @@
 mod commands;
 
 use clap::{Parser, Subcommand};
-use commands::{bake, bench, character, evaluate, garment, inspect, motion, predict, render, simulate, train};
+use commands::{bake, bench, character, evaluate, garment, inspect, motion, predict, render, sheet, simulate, train};
 
 /// Learned cloth for any skinned character.
 ///
@@ -17,6 +17,7 @@ use commands::{bake, bench, character, evaluate, garment, inspect, motion, predi
 ///   ctsn motion character.glb -o moving.glb           clips, if it has none
 ///   ctsn garment character.glb -o garment.glb         a garment, if you have none
 ///   ctsn simulate character.glb garment.glb -o data   quasi-static truth for every frame of the clips
+///   ctsn sheet data character.glb -o sheet.png        twelve of the poses, to judge by eye
 ///   ctsn train data -o model.safetensors              the network, from the first 90 % of every clip
 ///   ctsn evaluate model.safetensors data              errors on the rest
 ///   ctsn render model.safetensors character.glb --clip NAME --frame N -o picture.png
@@ -37,17 +38,37 @@ enum Command {
     Train(train::Arguments),
     Evaluate(evaluate::Arguments),
     Render(render::Arguments),
+    Sheet(sheet::Arguments),
     Inspect(inspect::Arguments),
     Predict(predict::Arguments),
     Bench(bench::Arguments),
 }
 
+/// Exit code of a program that the signal SIGPIPE ends.
+const BROKEN_PIPE: i32 = 128 + 13;
+
+/// Ends quietly where the reader of the output has gone, as in `ctsn … | head`: `println!` can only panic then.
+fn end_with_the_reader() {
+    let report = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |panic| {
+        if panic
+            .payload_as_str()
+            .is_some_and(|text| text.starts_with("failed printing to std") && text.contains("pipe"))
+        {
+            std::process::exit(BROKEN_PIPE);
+        }
+        report(panic);
+    }));
+}
+
 fn main() -> std::process::ExitCode {
+    end_with_the_reader();
     let result = match Cli::parse().command {
         Command::Character(arguments) => character::run(&arguments),
         Command::Motion(arguments) => motion::run(&arguments),
         Command::Garment(arguments) => garment::run(&arguments),
         Command::Render(arguments) => render::run(&arguments),
+        Command::Sheet(arguments) => sheet::run(&arguments),
         Command::Inspect(arguments) => inspect::run(&arguments),
         Command::Predict(arguments) => predict::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),

@@ -79,6 +79,8 @@ pub struct Garment {
     pub mesh: Mesh,
     /// What is drawn of it (seams split, UVs).
     pub surface: Surface,
+    /// Vertices of the cloth mesh that are sprung to the body, as a waistband or a collar is; ascending.
+    pub pins: Vec<u32>,
 }
 
 impl Character {
@@ -127,5 +129,51 @@ impl Mesh {
             triangle.iter().for_each(|&i| normals[i as usize] += normal);
         }
         normals.iter().map(|normal| normal.try_normalize().unwrap_or(DVec3::Y)).collect()
+    }
+}
+
+/// A row-major 3×4 transform in f32, as model files and datasets keep it.
+pub fn row_major(transform: &DAffine3) -> [f32; 12] {
+    let (matrix, t) = (transform.matrix3, transform.translation);
+    std::array::from_fn(|e| if e % 4 == 3 { t[e / 4] } else { matrix.col(e % 4)[e / 4] } as f32)
+}
+
+/// The inverse of [`row_major`].
+pub fn affine(numbers: &[f32; 12]) -> DAffine3 {
+    let column = |c: usize| DVec3::new(numbers[c].into(), numbers[4 + c].into(), numbers[8 + c].into());
+    DAffine3::from_cols(column(0), column(1), column(2), column(3))
+}
+
+/// Joint transforms of a pose as numbers [J, 3, 4].
+pub fn joints(pose: &Pose) -> Vec<f32> {
+    pose.iter().flat_map(row_major).collect()
+}
+
+/// The inverse of [`joints`].
+pub fn pose(joints: &[f32]) -> Pose {
+    joints.as_chunks::<12>().0.iter().map(affine).collect()
+}
+
+/// Vertices as numbers [n, 3].
+pub fn numbers(vertices: &[DVec3]) -> Vec<f32> {
+    vertices.iter().flat_map(|vertex| vertex.to_array().map(|value| value as f32)).collect()
+}
+
+/// The inverse of [`numbers`].
+pub fn vertices(numbers: &[f32]) -> Vec<DVec3> {
+    numbers.as_chunks::<3>().0.iter().map(|vertex| DVec3::from_array(vertex.map(f64::from))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn transforms_survive_their_row_major_form() {
+        let turn = glam::DQuat::from_rotation_x(0.3);
+        let there = DAffine3::from_scale_rotation_translation(DVec3::splat(0.9), turn, DVec3::new(0.1, 0.7, -2.0));
+        let back = affine(&row_major(&there));
+        assert!((back.matrix3 - there.matrix3).to_cols_array().iter().all(|error| error.abs() < 1e-7));
+        assert!((back.translation - there.translation).length() < 1e-7);
     }
 }

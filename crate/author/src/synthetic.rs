@@ -1,7 +1,7 @@
 //! A made-up dataset of any size, for benchmarks and tests: a tube of cloth around a body of a chain of joints.
 
 use crate::dataset::{Description, Record, Sample, Setup};
-use crate::ground_truth::row_major;
+use crate::rig::row_major;
 use glam::{DAffine3, DQuat, DVec3};
 
 /// Length of the tube, metres.
@@ -43,7 +43,7 @@ pub fn dataset(vertices: usize, joints: usize, poses: usize) -> (Setup, Vec<Samp
             inverse_bind: (0..joints)
                 .map(|j| row_major(&DAffine3::from_translation(DVec3::NEG_Y * bone * j as f64)).to_vec())
                 .collect(),
-            material: "none".to_owned(),
+            ..Description::default()
         },
         garment: cloth.clone(),
         template: cloth.clone(),
@@ -76,6 +76,6 @@ fn sample(rng: &mut fastrand::Rng, joints: usize, bone: f64, frame: usize, cloth
         world *= DAffine3::from_rotation_translation(DQuat::from_axis_angle(axis, 0.1 * rng.f64()), offset);
         pose.extend(row_major(&world));
     }
-    let record = Record { clip: 0, frame, rejected: None, residual: 0.0, stretch: 1.0, distance: 0.0, seconds: 0.0 };
+    let record = Record { frame, ..Record::default() };
     Sample { record, joints: pose, truth: cloth.iter().map(|x| x + 0.02 * (rng.f32() - 0.5)).collect() }
 }

@@ -4,7 +4,7 @@ mod made;
 
 use ctsn_core::file::{Tensor, Tensors};
 use glam::DVec3;
-use made::{Folder, edit, spoil, write_character, write_garment};
+use made::{Folder, edit, spoil, write_blanket, write_character, write_garment};
 use serde_json::Value;
 
 const TINY: &[u8] = include_bytes!("../../../tests/golden/tiny.safetensors");
@@ -177,4 +177,66 @@ fn arguments_that_are_none_are_refused() {
         assert_eq!(output.status.code(), Some(2), "ctsn {arguments}");
         assert!(String::from_utf8_lossy(&output.stderr).contains("Usage"), "ctsn {arguments}");
     }
+}
+
+/// Every file of a dataset that the machine has no say in, by its path.
+fn poses_of(folder: &std::path::Path) -> std::collections::BTreeMap<String, Vec<u8>> {
+    let mut files = std::collections::BTreeMap::new();
+    for part in ["", "poses", "twins"] {
+        // A shard may have no twin.
+        for entry in std::fs::read_dir(folder.join(part)).into_iter().flatten() {
+            let path = entry.expect("a file").path();
+            if path.extension().is_some_and(|extension| extension == "safetensors") {
+                let name = path.strip_prefix(folder).expect("a path inside").display().to_string();
+                files.insert(name, std::fs::read(&path).expect("a file"));
+            }
+        }
+    }
+    files
+}
+
+#[test]
+fn shards_copied_together_equal_a_single_run() {
+    let folder = Folder::new();
+    write_character(&folder, |_| ());
+    write_blanket(&folder);
+    let simulate = "simulate character.glb garment.glb --noise-floor 2 -o";
+    let whole = folder.accepts(&format!("{simulate} whole"));
+    for part in ["3 kept, 0 left out, 0 not simulated", "2 poses with every joint turned by 0.5°", "cotton"] {
+        assert!(whole.contains(part), "wanted {part:?} in {whole}");
+    }
+    let first = folder.accepts(&format!("{simulate} first --shard 0/2"));
+    assert!(first.contains("2 kept, 0 left out, 1 not simulated"), "{first}");
+    folder.accepts(&format!("{simulate} second --shard 1/2"));
+    let mut merged = poses_of(&folder.path("first"));
+    let second = poses_of(&folder.path("second"));
+    assert_eq!(merged["setup.safetensors"], second["setup.safetensors"], "the canonical drape depends on the shard");
+    for (name, bytes) in second {
+        std::fs::create_dir_all(folder.path("first").join(&name).parent().expect("a folder")).expect("a folder");
+        std::fs::write(folder.path("first").join(&name), &bytes).expect("a file copied");
+        merged.insert(name, bytes);
+    }
+    let single = poses_of(&folder.path("whole"));
+    assert_eq!(single.len(), 1 + 3 + 2, "{:?}", single.keys());
+    assert!(merged == single, "wanted {:?}, found {:?}", single.keys(), merged.keys());
+    let again = folder.accepts(&format!("{simulate} first"));
+    assert!(again.contains("0 poses to simulate, 5 found done") && again.contains("3 kept"), "{again}");
+    let report: Value =
+        serde_json::from_slice(&std::fs::read(folder.path("first/report.json")).expect("a report")).expect("JSON");
+    assert_eq!((report["kept"].as_u64(), report["missing"].as_u64()), (Some(3), Some(0)), "{report}");
+    assert_eq!(report["penetration"]["vertices"].as_u64(), Some(0), "{report}");
+    assert!(folder.accepts("inspect first").contains("3 kept"));
+    folder.refuses(&format!("{simulate} first --rate 5"), &["first", "other motion", "5 poses a second"]);
+}
+
+#[test]
+#[cfg(unix)]
+fn a_reader_that_leaves_is_no_panic() {
+    let folder = Folder::new();
+    folder.write("tiny.safetensors", TINY);
+    // The reader has gone before the first line comes.
+    let script = format!("(sleep 0.3; {} inspect tiny.safetensors; echo $? >&2) | true", env!("CARGO_BIN_EXE_ctsn"));
+    let mut shell = std::process::Command::new("sh");
+    let output = shell.args(["-c", &script]).current_dir(folder.path("")).output().expect("sh runs");
+    assert_eq!(String::from_utf8_lossy(&output.stderr), "141\n");
 }

@@ -2,11 +2,16 @@
 //! simulation.md §4.1.
 
 mod andy;
+mod cat;
 mod colour;
+mod dolphin;
 mod figure;
+mod fox;
 mod loft;
 mod mannequin;
 mod monster;
+mod paw;
+mod prop;
 mod qman;
 mod remesh;
 mod surface;
@@ -22,8 +27,17 @@ use glam::DVec3;
 use loft::Loft;
 
 /// Every character this module can build, by name.
-const FIGURES: &[(&str, Figure)] =
-    &[("mannequin", mannequin::MANNEQUIN), ("andy", andy::ANDY), ("qman", qman::QMAN), ("monster", monster::MONSTER)];
+const FIGURES: &[(&str, Figure)] = &[
+    ("mannequin", mannequin::MANNEQUIN),
+    ("andy", andy::ANDY),
+    ("qman", qman::QMAN),
+    ("monster", monster::MONSTER),
+    ("cat", cat::CAT),
+    ("dolphin", dolphin::DOLPHIN),
+    ("fox", fox::FOX),
+    ("sphere", prop::SPHERE),
+    ("box", prop::BOX),
+];
 
 /// The character of that name, with the project's clips.
 pub fn character(name: &str) -> Result<Character> {
@@ -77,11 +91,13 @@ fn edge_length(lofts: &[Loft], p: DVec3) -> f64 {
     let share = |loft: &Loft| (loft.edge, (-loft.distance(p).max(0.0) / 0.01).exp());
     let (sum, weight) = lofts
         .iter()
-        .filter(|loft| loft.near(p))
+        .filter(|loft| loft.role != Role::Paint && loft.near(p))
         .map(share)
         .fold((0.0, 1e-12), |(s, w), (edge, k)| (s + edge * k, w + k));
     if weight > 1e-9 { sum / weight } else { 0.02 }
 }
 
+#[cfg(test)]
+mod animal_tests;
 #[cfg(test)]
 pub(crate) mod tests;

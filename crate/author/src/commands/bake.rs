@@ -3,6 +3,7 @@
 use super::{evaluate, garment, simulate, train};
 use anyhow::{Context, Result};
 use ctsn_author::garment::Cut;
+use ctsn_author::ground_truth::Shard;
 use std::path::{Path, PathBuf};
 
 /// Character and garment in, model out: simulate → train → evaluate
@@ -19,14 +20,14 @@ pub struct Arguments {
     output: PathBuf,
     #[command(flatten, next_help_heading = "Garment, where none is given")]
     cut: garment::CutArguments,
-    #[command(flatten, next_help_heading = "Motion")]
-    motion: simulate::Motion,
+    #[command(flatten, next_help_heading = "Simulation")]
+    options: simulate::Options,
     #[command(flatten, next_help_heading = "Training")]
     settings: train::Settings,
 }
 
 pub fn run(arguments: &Arguments) -> Result<()> {
-    let Arguments { character, garment, output, cut, motion, settings } = arguments;
+    let Arguments { character, garment, output, cut, options, settings } = arguments;
     let dataset = output.with_extension("work");
     let garment = match garment {
         Some(garment) => garment.clone(),
@@ -36,7 +37,8 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         character: character.clone(),
         garment,
         output: dataset.clone(),
-        motion: motion.clone(),
+        shard: Shard::WHOLE,
+        options: options.clone(),
     })?;
     train::run(&train::Arguments { dataset: dataset.clone(), output: output.clone(), settings: settings.clone() })?;
     evaluate::run(&evaluate::Arguments { model: output.clone(), dataset, report: None })

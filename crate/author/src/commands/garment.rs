@@ -1,21 +1,29 @@
 //! `ctsn garment`: a garment for any character.
 
 use anyhow::Result;
-use ctsn_author::garment::{Cut, shell};
+use ctsn_author::garment::{Cut, Kind, Rest, default_kind, drape, load, shell};
 use ctsn_author::gltf;
+use ctsn_author::rig::Garment;
 use std::path::{Path, PathBuf};
 
-/// Make a garment for any rigged character
+/// Make a garment for any rigged character, or check one of your own
 ///
-/// An offset shell of the body, cut at neck, sleeves and hem: a shirt for what walks upright, a coat for what goes on four legs.
-/// Fractions run along a limb, from where it leaves the trunk (0) to its tip (1).
+/// The garment is cut from a shell of the body, evenly meshed, and hung on the canonical pose. Fractions run along a limb, from where
+/// it leaves the trunk (0) to its tip (1), a leg's being the ankle. Waistbands and collars are pinned to the body: the vertex attribute
+/// _PIN (scalar, 1 = pinned) says where. A garment of your own may have the attribute too.
+///
+/// --check reads a garment of your own and says what is wrong with it: scale, fit, cloth inside the body, inside out, non-manifold
+/// edges, duplicated faces, holes, loose pieces, with the file's vertex numbers. `simulate` and `bake` check the same.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// Rigged character (glTF)
     character: PathBuf,
     /// Where to write the garment (GLB)
-    #[arg(short, long)]
-    output: PathBuf,
+    #[arg(short, long, required_unless_present = "check")]
+    output: Option<PathBuf>,
+    /// Check this garment instead (glTF)
+    #[arg(long, conflicts_with = "output")]
+    check: Option<PathBuf>,
     #[command(flatten)]
     cut: CutArguments,
 }
@@ -23,48 +31,80 @@ pub struct Arguments {
 /// How the garment is cut.
 #[derive(clap::Args, Clone)]
 pub struct CutArguments {
-    /// Distance from the body, metres. Default: 12 mm on a human
+    /// What to make. Default: a T-shirt for what walks upright, a coat for an animal, a vest for what has no limbs
+    #[arg(long)]
+    kind: Option<Kind>,
+    /// Vertices, about: 500 to 10000. Default: 3000
+    #[arg(long)]
+    vertices: Option<usize>,
+    /// Distance from the body, metres. Default by kind; a T-shirt's on a human: 12 mm
     #[arg(long)]
     looseness: Option<f64>,
-    /// Vertices, about: 500 to 10000
-    #[arg(long, default_value_t = Cut::default().vertices)]
-    vertices: usize,
-    /// Covered joint, by name; may be given several times. Default: trunk and the fractions below
-    #[arg(long = "cover")]
-    joints: Vec<String>,
     /// Sleeves and leg holes: covered fraction of arms, or of an animal's legs
-    #[arg(long, default_value_t = Cut::default().sleeve)]
-    sleeve: f64,
+    #[arg(long)]
+    sleeve: Option<f64>,
     /// Hem: covered fraction of the legs of what walks upright
-    #[arg(long, default_value_t = Cut::default().hem)]
-    hem: f64,
+    #[arg(long)]
+    hem: Option<f64>,
     /// Collar: covered fraction of neck and tail
-    #[arg(long, default_value_t = Cut::default().collar)]
-    collar: f64,
+    #[arg(long)]
+    collar: Option<f64>,
+    /// How much a skirt widens on every side, metres per metre of fall
+    #[arg(long)]
+    flare: Option<f64>,
 }
 
 impl CutArguments {
     /// The cut these arguments describe.
     pub fn cut(&self) -> Cut {
-        let Self { looseness, vertices, ref joints, sleeve, hem, collar } = *self;
-        let joints = Some(joints.clone()).filter(|joints| !joints.is_empty());
-        Cut { looseness, vertices, joints, sleeve, hem, collar }
+        let Self { kind, vertices, looseness, sleeve, hem, collar, flare } = *self;
+        Cut { kind, vertices, looseness, sleeve, hem, collar, flare }
     }
 }
 
 pub fn run(arguments: &Arguments) -> Result<()> {
-    make(&arguments.character, &arguments.cut.cut(), &arguments.output)
+    if let Some(garment) = &arguments.check {
+        return check(&arguments.character, garment);
+    }
+    arguments.output.as_ref().map_or(Ok(()), |output| make(&arguments.character, &arguments.cut.cut(), output))
 }
 
-/// Cuts a garment for the character and writes it.
+/// Says what is wrong with a garment; fails on what makes it unusable.
+fn check(character: &Path, garment: &Path) -> Result<()> {
+    let character = gltf::read_character(character, 1.0)?;
+    let (cloth, warnings) = load(garment, &character)?;
+    warnings.iter().for_each(|warning| println!("{warning}"));
+    let (vertices, pins) = (cloth.mesh.positions.len(), cloth.pins.len());
+    println!(
+        "{}: {vertices} vertices, {pins} pins; fit to be simulated, {} warnings",
+        garment.display(),
+        warnings.len()
+    );
+    Ok(())
+}
+
+/// Cuts a garment for the character, hangs it and writes it.
 pub fn make(character: &Path, cut: &Cut, output: &Path) -> Result<()> {
     // Any rate will do: a garment is cut on the canonical pose.
     let character = gltf::read_character(character, 1.0)?;
-    let mut garment = shell(&character, cut)?;
+    let kind = cut.kind.map_or_else(|| default_kind(&character), Ok)?;
+    let cloth = shell(&character, &Cut { kind: Some(kind), ..cut.clone() })?;
+    eprintln!("{}: cut, {} vertices; hanging it", kind.name(), cloth.mesh.positions.len());
+    let Rest { mut garment, moved, strain } = drape(&character, &cloth)?;
     // In the units of the character's file, so that the two belong together in any tool.
     garment.mesh.positions.iter_mut().for_each(|position| *position /= character.metres_per_unit);
     gltf::write_garment(output, &garment)?;
-    let mesh = &garment.mesh;
-    println!("{}: {} vertices, {} triangles", output.display(), mesh.positions.len(), mesh.triangles.len());
+    let Garment { mesh, pins, .. } = &garment;
+    println!(
+        "{}: {}, {} vertices, {} triangles, {} pins; sank by up to {:.0} mm, edges changed by {:.1} % (95 of 100; at most {:.1} %)",
+        output.display(),
+        kind.name(),
+        mesh.positions.len(),
+        mesh.triangles.len(),
+        pins.len(),
+        1e3 * moved,
+        1e2 * strain[0],
+        1e2 * strain[1]
+    );
     Ok(())
 }

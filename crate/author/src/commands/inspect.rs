@@ -1,25 +1,30 @@
-//! `ctsn inspect`: what is in a model file.
+//! `ctsn inspect`: what is in a model file or a dataset folder.
 
 use anyhow::{Context, Result};
 use ctsn_author::dataset;
+use ctsn_author::report::Report;
 use ctsn_core::file::Tensors;
 use ctsn_core::model::HostModel;
 use std::path::PathBuf;
 
-/// Show sizes, tensors, bytes, joints and what a model was trained on
+/// Show what is in a model (sizes, tensors, bytes, joints, training), or the report of a dataset
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// Model file (safetensors)
-    model: PathBuf,
+    /// Model file (safetensors), or dataset folder
+    path: PathBuf,
 }
 
-pub fn run(arguments: &Arguments) -> Result<()> {
-    let bytes = dataset::read(&arguments.model)?;
-    let context = || arguments.model.display().to_string();
+pub fn run(Arguments { path }: &Arguments) -> Result<()> {
+    if path.is_dir() {
+        println!("{}", Report::new(path)?);
+        return Ok(());
+    }
+    let bytes = dataset::read(path)?;
+    let context = || path.display().to_string();
     let file = Tensors::parse(&bytes).with_context(context)?;
     let model = HostModel::parse(&bytes).with_context(context)?;
     let sizes = model.sizes;
-    println!("{}: {} bytes, {} tensors", arguments.model.display(), bytes.len(), file.tensors.len());
+    println!("{}: {} bytes, {} tensors", path.display(), bytes.len(), file.tensors.len());
     println!("  cloth      {} vertices, {} triangles", sizes.vertices, model.triangles.len() / 3);
     println!("  joints     {}, root {}, frame {:?}", sizes.joints, model.rig.joints[model.rig.root], model.rig.frame);
     println!("  embedding  m = {}, layers {}", sizes.embedding, outputs(&model.embedding));

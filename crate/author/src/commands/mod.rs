@@ -9,6 +9,7 @@ pub mod inspect;
 pub mod motion;
 pub mod predict;
 pub mod render;
+pub mod sheet;
 pub mod simulate;
 pub mod train;
 
@@ -17,8 +18,9 @@ use ctsn_author::dataset;
 use ctsn_author::rig::{Character, Clip};
 use ctsn_author::train::Architecture;
 use ctsn_core::model::HostModel;
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{HumanDuration, ProgressBar, ProgressState, ProgressStyle};
 use std::path::Path;
+use std::time::Duration;
 
 /// Sizes of the network that are free to choose, for every command that makes one.
 #[derive(clap::Args, Clone)]
@@ -55,10 +57,21 @@ pub fn model(path: &Path) -> Result<HostModel> {
 
 /// A bar with elapsed and remaining time.
 pub fn bar(length: usize, what: &str) -> ProgressBar {
-    let style = ProgressStyle::with_template("{prefix:>10} {bar:30} {pos}/{len} {elapsed} + {eta} left  {msg}");
+    let style = ProgressStyle::with_template("{prefix:>10} {bar:30} {pos}/{len} {elapsed} + {left} left  {msg}");
     let bar = ProgressBar::new(length as u64).with_prefix(what.to_owned());
-    bar.enable_steady_tick(std::time::Duration::from_millis(500));
-    if let Ok(style) = style { bar.with_style(style) } else { bar }
+    bar.enable_steady_tick(Duration::from_millis(500));
+    let left = |state: &ProgressState, text: &mut dyn std::fmt::Write| {
+        let left = remaining(state.elapsed(), state.pos(), state.len().unwrap_or_default());
+        // A bar that cannot be written is not worth an error.
+        let _ = write!(text, "{left}");
+    };
+    if let Ok(style) = style { bar.with_style(style.with_key("left", left)) } else { bar }
+}
+
+/// What is left of a work of `all` like steps when `done` took that long. The bar's own estimate looks back some seconds only: where
+/// two steps come at once and none for the next ten seconds, it wavers between nothing and days.
+pub fn remaining(taken: Duration, done: u64, all: u64) -> HumanDuration {
+    HumanDuration(taken.mul_f64(all.saturating_sub(done) as f64 / done.max(1) as f64))
 }
 
 /// Tells what was written: joints, triangles, and the clips with their lengths in seconds.

@@ -3,8 +3,7 @@
 use super::model;
 use anyhow::{Context, Result, bail};
 use ctsn_author::dataset::{Sample, pose_path};
-use ctsn_author::ground_truth::{joints, vertices};
-use ctsn_author::rig::{Character, Pose};
+use ctsn_author::rig::{Character, Pose, joints, vertices};
 use ctsn_author::simulate::body_frame;
 use ctsn_author::{gltf, render};
 use ctsn_core::cpu::Level;

@@ -1,16 +1,26 @@
 //! `ctsn simulate`: the truth to learn from.
 
-use super::{bar, file_name};
+use super::{bar, file_name, remaining};
 use anyhow::{Result, bail};
+use ctsn_author::garment;
 use ctsn_author::gltf;
-use ctsn_author::ground_truth::{self, Count};
-use ctsn_author::rig::{Character, Garment};
+use ctsn_author::ground_truth::{Request, Run, Shard};
+use ctsn_author::report::Report;
+use ctsn_author::rig::Character;
+use ctsn_author::simulate::{Material, Settings};
 use std::path::{Path, PathBuf};
 
 /// Simulate a garment on every frame of a character's clips
 ///
 /// Every pose is simulated on its own: the garment is draped on the canonical pose, carried to the pose along a fixed path, and
-/// relaxed to rest. Poses already in the folder are kept, so an interrupted run goes on where it stopped.
+/// relaxed to rest. Poses already in the folder are kept, so an interrupted run goes on where it stopped. At the end a report is
+/// written into the folder (report.json) and shown; `ctsn inspect FOLDER` shows it again.
+///
+/// All cores are used; RAYON_NUM_THREADS=2 in the environment keeps it to two. The result does not depend on it.
+///
+/// Many machines can share the work: give each its part with --shard 0/8, 1/8 … 7/8 (in an array job, $SLURM_ARRAY_TASK_ID/8 or
+/// $JOB_COMPLETION_INDEX/8). They may write into one shared folder, or each into its own, to be copied together:
+/// `cp -r shard-*/. data`. The outcome is the same as that of a single run, byte for byte.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// Rigged character (glTF)
@@ -20,74 +30,88 @@ pub struct Arguments {
     /// Dataset folder
     #[arg(short, long)]
     pub output: PathBuf,
+    /// Simulate only part i of N, i from 0 to N - 1
+    #[arg(long, value_name = "i/N", default_value_t = Shard::WHOLE)]
+    pub shard: Shard,
     #[command(flatten)]
-    pub motion: Motion,
+    pub options: Options,
 }
 
-/// Which poses.
+/// Which poses, of what cloth.
 #[derive(clap::Args, Clone)]
-pub struct Motion {
+pub struct Options {
     /// Poses per second sampled from every clip
     #[arg(long, default_value_t = 10.0)]
     pub rate: f64,
     /// Clip to use, by name; may be given several times. Default: all
     #[arg(long = "clip")]
     pub clips: Vec<String>,
+    #[arg(long, default_value = "cotton", help = format!("Material of the cloth: {}", Material::names()))]
+    pub material: String,
+    /// Simulate this many poses a second time, every joint turned by half a degree, to measure the noise of the truth
+    #[arg(long, value_name = "K", default_value_t = 0)]
+    pub noise_floor: usize,
 }
 
 pub fn run(arguments: &Arguments) -> Result<()> {
-    let character = character(&arguments.character, &arguments.motion)?;
-    let garment = gltf::read_garment(&arguments.garment, character.metres_per_unit)?;
+    let Arguments { options, output, shard, .. } = arguments;
+    let material = Material::named(&options.material)?;
+    let character = character(&arguments.character, options)?;
+    let (garment, warnings) = garment::load(&arguments.garment, &character)?;
+    warnings.iter().for_each(|warning| eprintln!("  {}: {warning}", arguments.garment.display()));
     let names = [file_name(&arguments.character), file_name(&arguments.garment)];
-    run_on(&character, &garment, &names, &arguments.output)
+    println!("{} on {}: {} vertices", names[1], names[0], garment.mesh.positions.len());
+    let request = Request {
+        character: &character,
+        garment: &garment,
+        names: names.each_ref().map(String::as_str),
+        material: (&options.material, material),
+        settings: Settings { attached: garment.pins.clone(), ..Settings::default() },
+        shard: *shard,
+        twins: options.noise_floor,
+    };
+    let work = Run::new(request, output)?;
+    println!("{} poses to simulate, {} found done", work.left(), work.found);
+    follow(&work, &character)?;
+    let report = Report::new(output)?;
+    report.write(output)?;
+    println!("{report}");
+    if report.kept == 0 && report.missing < report.frames {
+        bail!("no pose converged; the reasons stand above");
+    }
+    Ok(())
 }
 
 /// Reads a character with the chosen clips.
-pub fn character(path: &Path, motion: &Motion) -> Result<Character> {
-    if !(motion.rate > 0.0 && motion.rate <= 1000.0) {
-        bail!("--rate: wanted more than 0 and at most 1000 poses per second, found {}", motion.rate);
+fn character(path: &Path, options: &Options) -> Result<Character> {
+    if !(options.rate > 0.0 && options.rate <= 1000.0) {
+        bail!("--rate: wanted more than 0 and at most 1000 poses per second, found {}", options.rate);
     }
-    let mut character = gltf::read_character(path, motion.rate)?;
-    if let Some(name) = motion.clips.iter().find(|name| character.clips.iter().all(|clip| clip.name != **name)) {
+    let mut character = gltf::read_character(path, options.rate)?;
+    if let Some(name) = options.clips.iter().find(|name| character.clips.iter().all(|clip| clip.name != **name)) {
         let known: Vec<_> = character.clips.iter().map(|clip| clip.name.as_str()).collect();
         bail!("{}: no clip {name}; it has: {}", path.display(), known.join(", "));
     }
-    character.clips.retain(|clip| motion.clips.is_empty() || motion.clips.contains(&clip.name));
+    character.clips.retain(|clip| options.clips.is_empty() || options.clips.contains(&clip.name));
     Ok(character)
 }
 
-/// Simulates into `folder` with a progress bar, and says what came out.
-pub fn run_on(character: &Character, garment: &Garment, names: &[String; 2], folder: &Path) -> Result<()> {
-    let poses: usize = character.clips.iter().map(|clip| clip.poses.len()).sum();
-    println!(
-        "{} on {}: {} vertices, {poses} poses in {} clips",
-        names[1],
-        names[0],
-        garment.mesh.positions.len(),
-        character.clips.len()
-    );
-    let bar = bar(poses, "simulate");
-    let seconds = std::sync::Mutex::new(Vec::new());
-    let Count { simulated, found, rejected } =
-        ground_truth::simulate(character, garment, [&names[0], &names[1]], folder, |record| {
-            bar.inc(1);
-            if let Some(reason) = &record.rejected {
-                // `println` of a bar that is not drawn, in a log file say, prints nothing.
-                bar.suspend(|| eprintln!("  left out: clip {} frame {}: {reason}", record.clip, record.frame));
-            }
-            if let Ok(mut seconds) = seconds.lock() {
-                seconds.push(record.seconds);
-            }
-        })?;
+/// Simulates with a progress bar, or in a log file with a line now and then.
+fn follow(work: &Run, character: &Character) -> Result<()> {
+    let bar = bar(work.left(), "simulate");
+    let every = (work.left() as u64 / 20).max(1);
+    work.simulate(|record, twin| {
+        bar.inc(1);
+        if let Some(reason) = &record.rejected {
+            let (clip, twin) = (&character.clips[record.clip].name, if twin { " (twin)" } else { "" });
+            // `println` of a bar that is not drawn, in a log file say, prints nothing.
+            bar.suspend(|| eprintln!("  left out: {clip} frame {}{twin}: {reason}", record.frame));
+        }
+        if bar.is_hidden() && bar.position().is_multiple_of(every) {
+            let left = remaining(bar.elapsed(), bar.position(), work.left() as u64);
+            eprintln!("  {} of {} poses, {left} left", bar.position(), work.left());
+        }
+    })?;
     bar.finish_and_clear();
-    let mut seconds = seconds.into_inner().unwrap_or_default();
-    seconds.sort_by(f64::total_cmp);
-    let median = seconds.get(seconds.len() / 2).copied().unwrap_or_default();
-    println!(
-        "{simulated} poses simulated, {found} found done, {rejected} left out; median {median:.2} s a pose and core"
-    );
-    if rejected == poses {
-        bail!("no pose converged; the reasons stand above");
-    }
     Ok(())
 }

@@ -1,5 +1,5 @@
-//! Extracts the closed shell from the field, cuts it at the openings' planes and keeps the outer piece.
-//! One loop per opening: past each plane only the piece that holds the limb's end falls away.
+//! Extracts the closed shell from the field, cuts it at the openings and keeps the outer piece.
+//! One loop per opening: of each opening's region only the piece that holds its end falls away.
 
 use super::field::Field;
 use super::opening::Opening;
@@ -40,22 +40,22 @@ fn volume(mesh: &Mesh, triangle: [u32; 3]) -> f64 {
     a.dot(b.cross(c))
 }
 
-/// Cuts at every opening in turn; `past` metres beyond a plane the shell is known to end.
-pub(super) fn cut(mesh: Mesh, openings: &[Opening], past: f64) -> Piece {
+/// Cuts at every opening in turn.
+pub(super) fn cut(mesh: Mesh, openings: &[Opening]) -> Piece {
     let mut piece = Piece { rim: vec![None; mesh.positions.len()], mesh };
     for (index, opening) in openings.iter().enumerate() {
-        piece = cut_one(piece, opening, index, past);
+        piece = cut_one(piece, opening, index);
     }
     largest(piece)
 }
 
-/// Removes what hangs past one plane, connected to the limb's end.
-fn cut_one(piece: Piece, opening: &Opening, index: usize, past: f64) -> Piece {
+/// Removes what lies in one opening's region, connected to its end.
+fn cut_one(piece: Piece, opening: &Opening, index: usize) -> Piece {
     let Piece { mesh, mut rim } = piece;
     let height: Vec<f64> = mesh.positions.iter().map(|p| opening.past(*p)).collect();
-    let end = opening.point + opening.normal * (0.7 * past);
     let bare = (0..height.len()).filter(|&v| height[v] > 0.0);
-    let seed = bare.min_by(|&a, &b| mesh.positions[a].distance(end).total_cmp(&mesh.positions[b].distance(end)));
+    let seed = bare
+        .min_by(|&a, &b| mesh.positions[a].distance(opening.end).total_cmp(&mesh.positions[b].distance(opening.end)));
     let Some(seed) = seed else { return Piece { mesh, rim } };
     let mut gone = vec![false; height.len()];
     let mut around = vec![Vec::new(); height.len()];

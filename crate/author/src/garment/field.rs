@@ -1,6 +1,8 @@
 //! Voxel field whose zero set is the garment: f = distance to the covered body - looseness, hollows bridged, smoothed,
 //! never closer than [`CLOSEST`] of the looseness. simulation.md §4.2.
 
+use super::opening::Plane;
+use super::pattern::{Pattern, Sleeve};
 use super::solid::{Near, Solid};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -13,6 +15,9 @@ const RISE: f64 = 0.3;
 
 /// Rounds of smoothing that may only grow the solid: cloth bridges hollows, it does not follow them.
 const FILLS: usize = 4;
+
+/// Half the gap between trouser legs, in voxels.
+const HALF_GAP: f64 = 0.7;
 
 /// Scalar field on a regular grid, trilinear in between; x runs fastest.
 pub(super) struct Field {
@@ -30,25 +35,32 @@ impl Field {
     /// A grid over the body with voxels of `cell` metres; zero set = the garment's closed shell.
     pub fn new(solid: &Solid, cell: f64) -> Field {
         let corners = || solid.triangles.iter().flatten();
-        let reach = solid.looseness + 4.0 * cell;
-        let margin = DVec3::splat(reach + 3.0 * solid.smoothing + 2.0 * cell);
-        let low = corners().fold(DVec3::INFINITY, |low, p| low.min(*p)) - margin;
-        let high = corners().fold(DVec3::NEG_INFINITY, |high, p| high.max(*p)) + margin;
+        let Pattern { hangs, sleeves, gap, .. } = solid.pattern;
+        let tubes = sleeves.iter().flat_map(|sleeve| sleeve.path.iter().zip(&sleeve.radii));
+        let tubes: Vec<(DVec3, f64)> = tubes.map(|(point, radius)| (*point, *radius)).collect();
+        let margin = solid.looseness + 6.0 * cell + 3.0 * solid.smoothing + solid.room;
+        let lows = corners().map(|p| *p - margin).chain(tubes.iter().map(|(p, radius)| *p - *radius - margin));
+        let highs = corners().map(|p| *p + margin).chain(tubes.iter().map(|(p, radius)| *p + *radius + margin));
+        let (low, high) = (lows.fold(DVec3::INFINITY, DVec3::min), highs.fold(DVec3::NEG_INFINITY, DVec3::max));
         let size = ((high - low) / cell).to_array().map(|n| n.ceil() as usize + 1);
         let mut field = Field { origin: low, cell, size, values: Vec::new() };
 
-        let wall = solid.looseness.max(0.6 * cell);
-        let mut near = field.distances(solid, reach, wall);
-        let inside = field.interior(&mut near, wall);
-        let clamp = solid.looseness.clamp(2.0 * cell, 4.0 * cell) as f32;
-        let value = |(near, inside): (&Near, &bool)| {
-            if *inside { -clamp } else { (near.covered - solid.looseness as f32).clamp(-clamp, clamp) }
-        };
-        field.values = near.iter().zip(&inside).map(value).collect();
-        field.crop(2 + (3.0 * solid.smoothing / cell) as usize);
-        for &(start, fall, length) in solid.hangs {
-            field.hang(start, fall, length, 0.0);
-            field.hang(start + fall * length, -fall, length, RISE);
+        let clamp = solid.looseness.clamp(2.0 * cell, 4.0 * cell);
+        let falling = solid.falling.map(|falling| field.offset(solid, falling, clamp));
+        field.values = field.offset(solid, solid.covered, clamp);
+        field.unite(sleeves, clamp);
+        let bounds = field.bounds(2 + ((3.0 * solid.smoothing + solid.room) / cell) as usize);
+        let falling = falling.map(|values| field.cropped(&values, bounds));
+        field.values = field.cropped(&field.values, bounds);
+        (field.origin, field.size) = (field.point(bounds[0]), [0, 1, 2].map(|k| bounds[1][k] - bounds[0][k] + 1));
+        if !hangs.is_empty() {
+            let whole = field.values.clone();
+            field.values = falling.unwrap_or_else(|| whole.clone());
+            for hang in hangs {
+                field.hang(hang, -hang.flare, clamp);
+                field.hang(&hang.reversed(), RISE.max(hang.flare + 0.1), clamp);
+            }
+            field.values.iter_mut().zip(whole).for_each(|(value, whole)| *value = value.min(whole));
         }
         let closest: Vec<f32> = field.values.iter().map(|v| v + ((1.0 - CLOSEST) * solid.looseness) as f32).collect();
         for round in 0..=FILLS {
@@ -56,7 +68,51 @@ impl Field {
             field.smooth(solid.smoothing);
             field.values.iter_mut().zip(before).for_each(|(value, before)| *value = value.min(before));
         }
+        if let Some(gap) = gap {
+            field.part(gap);
+        }
         field
+    }
+
+    /// Distance to the covered part of the body less the looseness, within ±`clamp` metres.
+    fn offset(&self, solid: &Solid, covered: &[bool], clamp: f64) -> Vec<f32> {
+        let wall = solid.looseness.max(0.6 * self.cell);
+        let mut near = self.distances(solid.triangles, covered, solid.looseness + 4.0 * self.cell, wall);
+        let inside = self.interior(&mut near, wall);
+        let clamp = clamp as f32;
+        let value = |(near, inside): (&Near, &bool)| {
+            if *inside { -clamp } else { (near.covered - solid.looseness as f32).clamp(-clamp, clamp) }
+        };
+        near.iter().zip(&inside).map(value).collect()
+    }
+
+    /// Keeps the solid off a plane, past another.
+    fn part(&mut self, [middle, start]: &[Plane; 2]) {
+        let [nx, ny, _] = self.size;
+        for i in 0..self.values.len() {
+            let point = self.point([i % nx, i / nx % ny, i / (nx * ny)]);
+            let off = (HALF_GAP * self.cell - middle.past(point).abs()).min(start.past(point));
+            self.values[i] = self.values[i].max(off as f32);
+        }
+    }
+
+    /// Adds tubes around limbs.
+    fn unite(&mut self, sleeves: &[Sleeve], clamp: f64) {
+        for (sleeve, k) in sleeves.iter().flat_map(|sleeve| (1..sleeve.path.len()).map(move |k| (sleeve, k))) {
+            let ([a, b], [ra, rb]) = ([k - 1, k].map(|k| sleeve.path[k]), [k - 1, k].map(|k| sleeve.radii[k] + clamp));
+            let [xs, ys, zs] = self.range((a - ra).min(b - rb), (a + ra).max(b + rb));
+            for (z, y, x) in (zs.0..zs.1)
+                .flat_map(|z| (ys.0..ys.1).map(move |y| (z, y)))
+                .flat_map(|(z, y)| (xs.0..xs.1).map(move |x| (z, y, x)))
+            {
+                let point = self.point([x, y, z]);
+                let t = ((point - a).dot(b - a) / (b - a).length_squared().max(1e-18)).clamp(0.0, 1.0);
+                let tube = point.distance(a.lerp(b, t)) - (ra + (rb - ra) * t) + clamp;
+                let slot = (z * self.size[1] + y) * self.size[0] + x;
+                let value = tube.max(sleeve.end.past(point)).clamp(-clamp, clamp) as f32;
+                self.values[slot] = self.values[slot].min(value);
+            }
+        }
     }
 
     /// Position of a voxel.
@@ -74,8 +130,8 @@ impl Field {
         })
     }
 
-    /// Cuts the grid down to the solid and a margin of voxels around it.
-    fn crop(&mut self, margin: usize) {
+    /// First and last voxel, per axis, of the solid and a margin of voxels around it.
+    fn bounds(&self, margin: usize) -> [[usize; 3]; 2] {
         let [nx, ny, _] = self.size;
         let place = |i: usize| [i % nx, i / nx % ny, i / (nx * ny)];
         let (mut low, mut high) = (self.size, [0; 3]);
@@ -84,12 +140,15 @@ impl Field {
             (low, high) = ([0, 1, 2].map(|k| low[k].min(place[k])), [0, 1, 2].map(|k| high[k].max(place[k])));
         }
         let low = [0, 1, 2].map(|k| low[k].min(high[k]).saturating_sub(margin));
-        let high = [0, 1, 2].map(|k| (high[k] + margin).min(self.size[k] - 1));
-        let within = |i: usize| (0..3).all(|k| (low[k]..=high[k]).contains(&place(i)[k]));
-        let values = (0..self.values.len()).filter(|&i| within(i)).map(|i| self.values[i]).collect();
-        self.origin = self.point(low);
-        self.size = [0, 1, 2].map(|k| high[k] - low[k] + 1);
-        self.values = values;
+        [low, [0, 1, 2].map(|k| (high[k] + margin).min(self.size[k] - 1))]
+    }
+
+    /// The values within bounds.
+    fn cropped(&self, values: &[f32], [low, high]: [[usize; 3]; 2]) -> Vec<f32> {
+        let [nx, ny, _] = self.size;
+        let row = |z: usize, y: usize| &values[(z * ny + y) * nx..][low[0]..=high[0]];
+        let rows = (low[2]..=high[2]).flat_map(|z| (low[1]..=high[1]).map(move |y| (z, y)));
+        rows.flat_map(|(z, y)| row(z, y)).copied().collect()
     }
 
     /// The up to six voxels next to voxel `i`.
@@ -105,29 +164,6 @@ impl Field {
             (z + 1 < nz).then(|| i + nx * ny),
         ];
         steps.into_iter().flatten()
-    }
-
-    /// Past `start` along `fall`, for `length` metres, the solid narrows by no more than `slope` metres per metre. One
-    /// layer of voxels takes the minimum with the layer before it, looked up against the direction of fall.
-    fn hang(&mut self, start: DVec3, fall: DVec3, length: f64, slope: f64) {
-        let axis = fall.abs().max_position();
-        let (forwards, count) = (fall[axis] > 0.0, self.size[axis]);
-        let step = fall * (self.cell / fall[axis].abs());
-        let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
-        for layer in 0..count {
-            let layer = if forwards { layer } else { count - 1 - layer };
-            for i in 0..self.size[u] * self.size[v] {
-                let mut index = [0; 3];
-                (index[axis], index[u], index[v]) = (layer, i % self.size[u], i / self.size[u]);
-                let point = self.point(index);
-                let past = (point - start).dot(fall);
-                if past > 0.0 && past < length {
-                    let above = (self.value(point - step) + slope * self.cell) as f32;
-                    let slot = (index[2] * self.size[1] + index[1]) * self.size[0] + index[0];
-                    self.values[slot] = self.values[slot].min(above);
-                }
-            }
-        }
     }
 
     /// Gaussian of standard deviation `sigma` metres, as three box filters per axis.

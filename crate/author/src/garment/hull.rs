@@ -2,6 +2,7 @@
 //! the body is only touched from outside. The garment's own field, without openings.
 
 use super::field::Field;
+use super::pattern::Pattern;
 use super::solid::Solid;
 use super::{cut, remesh, split_body};
 use crate::rig::{Character, Mesh};
@@ -18,9 +19,17 @@ pub fn hull(character: &Character) -> Result<(Mesh, f64)> {
     let high = positions.iter().fold(DVec3::NEG_INFINITY, |high, p| high.max(*p));
     let cell = super::cell(low, high);
     let (triangles, covered) = split_body(character, &[], (high - low).max_element() / 60.0, 0.0);
-    let solid = Solid { triangles: &triangles, covered: &covered, hangs: &[], looseness: cell, smoothing: cell };
+    let solid = Solid {
+        triangles: &triangles,
+        covered: &covered,
+        falling: None,
+        pattern: &Pattern::default(),
+        room: 0.0,
+        looseness: cell,
+        smoothing: cell,
+    };
     let field = Field::new(&solid, cell);
-    let piece = remesh::remesh(cut::cut(cut::extract(&field), &[], 0.0), &field, &[], VERTICES);
+    let piece = remesh::remesh(cut::cut(cut::extract(&field), &[]), &field, &[], VERTICES);
     match piece.mesh.triangles.is_empty() {
         true => Err(Error::Character("the body encloses nothing a garment could touch".into())),
         false => Ok((piece.mesh, cell)),

@@ -2,10 +2,17 @@
 //! coordinates. f = |x - body| - looseness, smoothed; garment = {f = 0} between the openings. simulation.md §4.2.
 
 mod anatomy;
+mod check;
+mod curve;
 mod cut;
+mod drape;
 mod field;
+mod figure;
+mod hang;
 mod hull;
+mod kind;
 mod opening;
+mod pattern;
 mod quality;
 mod remesh;
 mod solid;
@@ -13,78 +20,169 @@ mod unwrap;
 
 use crate::rig::{Character, Garment};
 use crate::{Error, Result};
+use cut::Piece;
 use field::Field;
+use figure::Figure;
 use glam::DVec3;
-use opening::{Opening, openings};
+use kind::Preset;
+use opening::{Bare, Opening};
+use pattern::{Hang, Pattern, pattern};
 use solid::Solid;
 
 #[cfg(test)]
 mod test;
 
+pub use check::{Findings, check, load};
+pub use drape::{Rest, drape};
 pub use hull::hull;
+pub use kind::Kind;
 pub use quality::{Quality, quality};
 
-/// How a garment is cut. Fractions run along a limb from where it leaves the trunk (0) to its tip (1).
-#[derive(Clone, Debug, PartialEq)]
+/// How a garment is cut; what is `None` follows from the kind. Fractions run along a limb from where it leaves the trunk (0)
+/// to its tip (1).
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Cut {
-    /// Distance from the body, metres; `None`: 1/150 of the body's largest extent, 12 mm on a human.
+    /// What it is; `None`: a T-shirt for what walks upright, a coat for an animal, a vest for what has no limbs.
+    pub kind: Option<Kind>,
+    /// Wanted number of vertices, 500 to 10000, within a few per cent; `None`: 3000.
+    pub vertices: Option<usize>,
+    /// Distance from the body, metres.
     pub looseness: Option<f64>,
-    /// Wanted number of vertices, 500 to 10000; the result is within a few per cent.
-    pub vertices: usize,
-    /// Names of the covered joints; `None`: trunk and the fractions below. With a list, the garment ends where it ends.
-    pub joints: Option<Vec<String>>,
     /// Sleeves and leg holes: fraction of a paired limb that is covered.
-    pub sleeve: f64,
-    /// Hem around two legs that continue the trunk downwards: fraction of the legs that is covered.
-    pub hem: f64,
+    pub sleeve: Option<f64>,
+    /// Hem: covered fraction of the legs of what walks upright.
+    pub hem: Option<f64>,
     /// Neck and tail: fraction of an unpaired limb that is covered.
-    pub collar: f64,
+    pub collar: Option<f64>,
+    /// Metres by which a skirt widens on every side per metre of fall, 0 to 1.
+    pub flare: Option<f64>,
 }
 
-impl Default for Cut {
-    fn default() -> Cut {
-        Cut { looseness: None, vertices: 2500, joints: None, sleeve: 0.2, hem: 0.1, collar: 0.05 }
-    }
+/// The kind of garment a character gets when nobody says which.
+pub fn default_kind(character: &Character) -> Result<Kind> {
+    let (_, _, extent) = bounds(character)?;
+    Ok(Figure::new(character, extent).build().kinds()[0])
 }
 
-/// A garment for the character in its canonical pose: one connected manifold, open only at neck, sleeves, hem and tail.
+/// A garment for the character in its canonical pose: one connected manifold, open only where its kind has openings.
 ///
-/// The body may be open, of several shells and self-intersecting. Characters without mirrored limbs get a band around
-/// the middle of their longest axis.
+/// The body may be open, of several shells and self-intersecting.
 pub fn shell(character: &Character, cut: &Cut) -> Result<Garment> {
-    check(character, cut)?;
-    let low = character.body.positions.iter().fold(DVec3::INFINITY, |low, p| low.min(*p));
-    let high = character.body.positions.iter().fold(DVec3::NEG_INFINITY, |high, p| high.max(*p));
-    let extent = (high - low).max_element();
+    let (low, high, extent) = bounds(character)?;
+    let figure = Figure::new(character, extent);
+    let kind = kind_for(&figure, cut.kind)?;
+    let (preset, vertices) = settle(cut, kind)?;
     let cell = cell(low, high);
-    let looseness = cut.looseness.unwrap_or(extent / 150.0);
+    let looseness = cut.looseness.unwrap_or((preset.looseness * extent).max(cell));
     if !(looseness >= cell && looseness <= 0.1 * extent) {
         let (least, most) = (cell, 0.1 * extent);
         return Err(Error::Garment(format!("looseness: wanted {least:.4} to {most:.4} m, found {looseness}")));
     }
-    let openings = openings(character, cut, extent)?;
     // The shell runs on past each opening, so that its end does not bend the cut.
     let past = 3.0 * looseness + 0.01 * extent;
-    let (triangles, covered) = split_body(character, &openings, extent / 60.0, past);
+    let pattern = pattern(&figure, kind, &preset, looseness, past);
+    let (triangles, covered) = split_body(character, &pattern.bare, extent / 60.0, past);
     if !covered.contains(&true) {
         return Err(Error::Garment("no triangle of the body lies on the covered joints".into()));
     }
-    let hang = |opening: &Opening| opening.hangs_from.map(|start| (start, opening.normal, past - opening.past(start)));
-    let hangs: Vec<_> = openings.iter().filter_map(hang).collect();
-    let smoothing = extent / 130.0;
-    let solid = Solid { triangles: &triangles, covered: &covered, hangs: &hangs, looseness, smoothing };
+    let falling = falling(&figure, &pattern, extent / 60.0, past);
+    let (smoothing, room, openings) = (extent / 130.0, pattern.room(past), &pattern.openings);
+    let solid = Solid {
+        triangles: &triangles,
+        covered: &covered,
+        falling: falling.as_deref(),
+        pattern: &pattern,
+        room,
+        looseness,
+        smoothing,
+    };
     let field = Field::new(&solid, cell);
-    let piece = cut::cut(cut::extract(&field), &openings, past);
+    let piece = cut::cut(cut::extract(&field), openings);
     if piece.mesh.triangles.is_empty() {
         return Err(Error::Garment("nothing is left of the shell between the openings".into()));
     }
-    let piece = remesh::remesh(piece, &field, &openings, cut.vertices);
+    let piece = remesh::remesh(piece, &field, openings, vertices);
     let quality = quality(&piece.mesh);
-    if !quality.manifold || quality.loops == 0 {
-        let found = format!("{} vertices, {} loops, manifold: {}", quality.vertices, quality.loops, quality.manifold);
-        return Err(Error::Garment(format!("wanted an open manifold sheet, found {found}")));
+    let loops = openings.len();
+    if !quality.manifold || (quality.loops, quality.euler) != (loops, 2 - loops as i64) {
+        let (name, found) = (kind.name(), format!("{} loops, Euler characteristic {}", quality.loops, quality.euler));
+        return Err(Error::Garment(format!(
+            "{name}: wanted one sheet with {loops} openings, found {found}: cloth grows together where limbs are close; a \
+             smaller --looseness or --flare, or another --sleeve or --hem, may help"
+        )));
     }
-    Ok(Garment { surface: unwrap::unwrap(&piece.mesh), mesh: piece.mesh })
+    let pins = pins(&piece, openings, quality.edge);
+    Ok(Garment { surface: unwrap::unwrap(&piece.mesh), mesh: piece.mesh, pins })
+}
+
+/// The kind to make on a figure, or why it cannot be.
+fn kind_for(figure: &Figure, wanted: Option<Kind>) -> Result<Kind> {
+    let build = figure.build();
+    let kind = wanted.unwrap_or(build.kinds()[0]);
+    if build.kinds().contains(&kind) {
+        return Ok(kind);
+    }
+    let names: Vec<&str> = build.kinds().iter().map(|kind| kind.name()).collect();
+    let (words, names) = (build.words(), names.join(", "));
+    Err(Error::Garment(format!("{}: this is {words}, which can wear: {names}", kind.name())))
+}
+
+/// The preset of a kind with the cut's own numbers, and the number of vertices.
+fn settle(cut: &Cut, kind: Kind) -> Result<(Preset, usize)> {
+    let mut preset = kind.preset();
+    let vertices = cut.vertices.unwrap_or(3000);
+    if !(500..=10_000).contains(&vertices) {
+        return Err(Error::Garment(format!("vertex count: wanted 500 to 10000, found {vertices}")));
+    }
+    let own = [
+        ("sleeve", cut.sleeve, &mut preset.sleeve, 0.95),
+        ("hem", cut.hem, &mut preset.hem, 0.95),
+        ("collar", cut.collar, &mut preset.collar, 0.95),
+        ("flare", cut.flare, &mut preset.flare, 1.0),
+    ];
+    for (name, wanted, place, most) in own {
+        let value = wanted.unwrap_or(*place);
+        if !(0.0..=most).contains(&value) {
+            return Err(Error::Garment(format!("{name}: wanted 0 to {most}, found {value}")));
+        }
+        *place = value;
+    }
+    Ok((preset, vertices))
+}
+
+/// Rim vertices on the plane where their opening is pinned, to within half an edge (metres).
+fn pins(piece: &Piece, openings: &[Opening], edge: f64) -> Vec<u32> {
+    let pinned = |v: &u32| {
+        let opening = piece.rim[*v as usize].map(|index| &openings[index]);
+        let plane = opening.and_then(|opening| opening.pinned);
+        plane.is_some_and(|plane| plane.past(piece.mesh.positions[*v as usize]).abs() < 0.5 * edge)
+    };
+    (0..piece.rim.len() as u32).filter(pinned).collect()
+}
+
+/// Which triangles of the split body fall with the trunk, where a hang would drag the arms along.
+fn falling(figure: &Figure, pattern: &Pattern, longest: f64, past: f64) -> Option<Vec<bool>> {
+    let limbs = 0..figure.anatomy.limbs.len();
+    let apart = limbs.filter(|limb| figure.legs.is_none_or(|legs| !legs.contains(limb)));
+    let apart: Vec<Bare> = apart.map(|limb| Bare { share: figure.share(limb), plane: None }).collect();
+    let low = |share: &[f64], hang: &Hang| {
+        let skin = figure.character.body.positions.iter().zip(share);
+        skin.filter(|(_, share)| **share > 0.5).any(|(p, _)| (*p - hang.start).dot(hang.fall) > 0.0)
+    };
+    let drags = || pattern.hangs.iter().any(|hang| apart.iter().any(|bare| low(&bare.share, hang)));
+    if figure.legs.is_none() || pattern.sleeves.is_empty() && !drags() {
+        return None;
+    }
+    let bare: Vec<Bare> = pattern.bare.iter().cloned().chain(apart).collect();
+    Some(split_body(figure.character, &bare, longest, past).1)
+}
+
+/// Corners and extent of the bounding box of a sound body, metres.
+fn bounds(character: &Character) -> Result<(DVec3, DVec3, f64)> {
+    check_body(character)?;
+    let low = character.body.positions.iter().fold(DVec3::INFINITY, |low, p| low.min(*p));
+    let high = character.body.positions.iter().fold(DVec3::NEG_INFINITY, |high, p| high.max(*p));
+    Ok((low, high, (high - low).max_element()))
 }
 
 /// Voxel edge for a body between two corners, metres: 7 mm on a human, and at most six million voxels on a bulky body.
@@ -94,16 +192,8 @@ fn cell(low: DVec3, high: DVec3) -> f64 {
 }
 
 /// Rejects what cannot be dressed.
-fn check(character: &Character, cut: &Cut) -> Result<()> {
+fn check_body(character: &Character) -> Result<()> {
     let fail = |message: String| Err(Error::Garment(message));
-    if !(500..=10_000).contains(&cut.vertices) {
-        return fail(format!("vertex count: wanted 500 to 10000, found {}", cut.vertices));
-    }
-    for (name, fraction) in [("sleeve", cut.sleeve), ("hem", cut.hem), ("collar", cut.collar)] {
-        if !(0.0..=0.9).contains(&fraction) {
-            return fail(format!("{name}: wanted a fraction from 0 to 0.9, found {fraction}"));
-        }
-    }
     let body = &character.body;
     if body.triangles.is_empty() || character.joints.is_empty() {
         let (triangles, joints) = (body.triangles.len(), character.joints.len());
@@ -120,7 +210,7 @@ fn check(character: &Character, cut: &Cut) -> Result<()> {
 
 /// The body's triangles, split until no edge is longer than `longest`, and which of them the garment, run on by `past`
 /// metres, covers.
-fn split_body(character: &Character, openings: &[Opening], longest: f64, past: f64) -> (Vec<[DVec3; 3]>, Vec<bool>) {
+fn split_body(character: &Character, bare: &[Bare], longest: f64, past: f64) -> (Vec<[DVec3; 3]>, Vec<bool>) {
     let (mut triangles, mut covered) = (Vec::new(), Vec::new());
     let positions = &character.body.positions;
     for triangle in &character.body.triangles {
@@ -139,12 +229,12 @@ fn split_body(character: &Character, openings: &[Opening], longest: f64, past: f
             } else if (b - a).cross(c - a).length() > 1e-9 * lengths[k] * lengths[k] {
                 let centre = (part[0] + part[1] + part[2]) / 3.0;
                 let point = (a + b + c) / 3.0;
-                let bare = |opening: &Opening| {
-                    let [p, q, r] = triangle.map(|v| opening.beyond[v as usize]);
-                    DVec3::new(p, q, r).dot(centre) > 0.5 && opening.past(point) > past
+                let is_bare = |bare: &Bare| {
+                    let [p, q, r] = triangle.map(|v| bare.share[v as usize]);
+                    DVec3::new(p, q, r).dot(centre) > 0.5 && bare.plane.is_none_or(|plane| plane.past(point) > past)
                 };
                 triangles.push([a, b, c]);
-                covered.push(!openings.iter().any(bare));
+                covered.push(!bare.iter().any(is_bare));
             }
         }
     }

@@ -111,7 +111,7 @@ fn fans(mesh: &Mesh) -> bool {
 }
 
 /// Smallest angle of a triangle, degrees.
-fn least_angle(mesh: &Mesh, triangle: [u32; 3]) -> f64 {
+pub(super) fn least_angle(mesh: &Mesh, triangle: [u32; 3]) -> f64 {
     let p = triangle.map(|v| mesh.positions[v as usize]);
     let angle = |k: usize| (p[(k + 1) % 3] - p[k]).angle_between(p[(k + 2) % 3] - p[k]).to_degrees();
     angle(0).min(angle(1)).min(angle(2))

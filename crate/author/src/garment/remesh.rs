@@ -99,13 +99,13 @@ impl<'a> Sheet<'a> {
         self.positions[a as usize].distance(self.positions[b as usize])
     }
 
-    /// Onto the zero set; rim vertices onto their plane as well.
+    /// Onto the zero set; rim vertices onto their opening's border as well.
     fn project(&self, v: u32, mut point: DVec3) -> DVec3 {
         let Some(opening) = self.rim[v as usize] else { return self.field.project(point) };
         let opening = &self.openings[opening];
         for _ in 0..3 {
             point = self.field.project(point);
-            point -= opening.normal * opening.past(point);
+            point = opening.project(point);
         }
         point
     }

@@ -2,6 +2,7 @@
 //! that open, multi-shell and self-intersecting bodies work.
 
 use super::field::Field;
+use super::pattern::Pattern;
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -11,8 +12,12 @@ pub(super) struct Solid<'a> {
     pub triangles: &'a [[DVec3; 3]],
     /// Per triangle: does the garment cover it?
     pub covered: &'a [bool],
-    /// Hangs: from a point along a unit direction for some metres the shell never narrows (cloth falls straight).
-    pub hangs: &'a [(DVec3, DVec3, f64)],
+    /// The same without limbs that the pattern's hangs would drag along; `None` where they drag none.
+    pub falling: Option<&'a [bool]>,
+    /// Where cloth falls free of the body, sleeves and gaps.
+    pub pattern: &'a Pattern,
+    /// Room for what hangs and widens, metres.
+    pub room: f64,
     /// Distance of the garment from the body, metres.
     pub looseness: f64,
     /// Standard deviation of the smoothing, metres.
@@ -32,26 +37,24 @@ pub(super) struct Near {
 
 impl Field {
     /// Exact triangle distances up to `reach`; one slice of the grid per task.
-    pub(super) fn distances(&self, solid: &Solid, reach: f64, wall: f64) -> Vec<Near> {
+    pub(super) fn distances(&self, triangles: &[[DVec3; 3]], covered: &[bool], reach: f64, wall: f64) -> Vec<Near> {
         let [nx, ny, nz] = self.size;
         let far = Near { body: reach as f32, covered: reach as f32, is_covered: false };
         let mut near = vec![far; nx * ny * nz];
         // The bare part only has to be a closed wall.
-        let ranges: Vec<[(usize, usize); 3]> = solid
-            .triangles
+        let ranges: Vec<[(usize, usize); 3]> = triangles
             .iter()
-            .zip(solid.covered)
+            .zip(covered)
             .map(|([a, b, c], covered)| {
                 (a.min(*b).min(*c), a.max(*b).max(*c), if *covered { reach } else { wall + self.cell })
             })
             .map(|(low, high, reach)| self.range(low - reach, high + reach))
             .collect();
         // Bounding spheres spare most of the exact distances.
-        let spheres: Vec<(DVec3, f64)> = solid
-            .triangles
+        let spheres: Vec<(DVec3, f64)> = triangles
             .iter()
             .map(|t| (t[0] + t[1] + t[2]) / 3.0)
-            .zip(solid.triangles)
+            .zip(triangles)
             .map(|(centre, t)| (centre, t.iter().fold(0.0, |radius: f64, p| radius.max(p.distance(centre)))))
             .collect();
         near.par_chunks_mut(nx * ny).enumerate().for_each(|(z, slice)| {
@@ -59,7 +62,7 @@ impl Field {
                 if z < zs.0 || z >= zs.1 {
                     continue;
                 }
-                let (triangle, covered) = (&solid.triangles[index], solid.covered[index]);
+                let (triangle, covered) = (&triangles[index], covered[index]);
                 let (centre, radius) = spheres[index];
                 for y in ys.0..ys.1 {
                     for x in xs.0..xs.1 {

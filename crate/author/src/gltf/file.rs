@@ -3,6 +3,7 @@
 
 use super::Read;
 use crate::Error;
+use ::gltf::Glb;
 use ::gltf::accessor::{DataType, Dimensions, sparse::IndexType};
 use ::gltf::buffer::{self, Data, View};
 use ::gltf::json::Root;
@@ -10,6 +11,8 @@ use ::gltf::json::animation::VALID_PROPERTIES;
 use ::gltf::json::image::MimeType;
 use ::gltf::json::validation::Checked;
 use ::gltf::{Accessor, Document, Gltf, Semantic};
+use serde_json::Value;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// Most components one accessor may hold: 2^27 f64 are 1 GiB, far past any character.
@@ -21,6 +24,8 @@ const UNDERSTOOD: [&str; 4] = ["KHR_materials_", "KHR_texture_", "KHR_mesh_quant
 /// The document and the bytes its buffers hold.
 pub(super) struct File {
     pub document: Document,
+    /// Accessor of `_PIN` by mesh and primitive: the `gltf` crate drops the attributes it does not know.
+    pub pins: BTreeMap<(usize, usize), usize>,
     buffers: Vec<Data>,
     folder: PathBuf,
 }
@@ -35,6 +40,7 @@ impl File {
 
     pub fn parse(bytes: &[u8], folder: PathBuf) -> Read<File> {
         let Gltf { document, blob } = parse_unchecked(bytes)?;
+        let pins = pins(bytes)?;
         let mut json = document.into_json();
         json.extensions_required.retain(|name| !UNDERSTOOD.iter().any(|known| name.starts_with(known)));
         if !json.extensions_required.is_empty() {
@@ -50,7 +56,7 @@ impl File {
         }
         let buffers = ::gltf::import_buffers(&document, Some(&folder), blob)
             .map_err(|error| format!("its buffers cannot be read: {error}"))?;
-        Ok(File { document, buffers, folder })
+        Ok(File { document, pins, buffers, folder })
     }
 
     /// All components of an accessor as numbers, normalised integers mapped to [0, 1] or [-1, 1]; every one is finite.
@@ -160,8 +166,10 @@ fn mend(json: &mut Root) -> Read<()> {
         }
     }
     let accessors = json.accessors.len();
-    for (index, mesh) in json.meshes.iter().enumerate() {
-        for primitive in &mesh.primitives {
+    for (index, mesh) in json.meshes.iter_mut().enumerate() {
+        for primitive in &mut mesh.primitives {
+            // Attributes of other programs' own, which validation would refuse.
+            primitive.attributes.retain(|semantic, _| matches!(semantic, Checked::Valid(_)));
             let Some(at) = primitive.attributes.get(&Checked::Valid(Semantic::Positions)) else { continue };
             let Some(accessor) = json.accessors.get_mut(at.value()) else {
                 return Err(format!("mesh {index}: its positions are in accessor {at}, of {accessors}"));
@@ -180,6 +188,25 @@ fn mend(json: &mut Root) -> Read<()> {
         }
     }
     Ok(())
+}
+
+/// Where each primitive's `_PIN` is, from the JSON of a file that has been parsed once.
+fn pins(bytes: &[u8]) -> Read<BTreeMap<(usize, usize), usize>> {
+    let refuse = |error: &dyn std::fmt::Display| format!("not a glTF: {error}");
+    let json: Value = match bytes.starts_with(b"glTF") {
+        true => {
+            let glb = Glb::from_slice(bytes).map_err(|error| refuse(&error))?;
+            serde_json::from_slice(&glb.json).map_err(|error| refuse(&error))?
+        }
+        false => serde_json::from_slice(bytes).map_err(|error| refuse(&error))?,
+    };
+    let list = |value: &Value, key: &str| value[key].as_array().cloned().unwrap_or_default();
+    let meshes = list(&json, "meshes").into_iter().enumerate();
+    let primitives = meshes.flat_map(|(mesh, value)| {
+        list(&value, "primitives").into_iter().enumerate().map(move |(at, primitive)| ((mesh, at), primitive))
+    });
+    let accessor = |primitive: &Value| primitive["attributes"]["_PIN"].as_u64().map(|index| index as usize);
+    Ok(primitives.filter_map(|(place, primitive)| Some((place, accessor(&primitive)?))).collect())
 }
 
 /// Refuses percent-encodings that are not UTF-8, on which the `gltf` crate panics.
@@ -220,7 +247,7 @@ fn number(bytes: &[u8], kind: DataType) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use serde_json::{Value, json};
+    use serde_json::json;
 
     /// The components of the one accessor of a file whose buffer is 01 80 FF 7F 02 00 00 00.
     fn read(accessor: Value, wanted: Dimensions) -> Read<Vec<f64>> {

@@ -10,6 +10,7 @@ mod skeleton;
 mod weld;
 mod write;
 
+pub use weld::Source;
 pub use write::{Appearance, write_character, write_garment};
 
 use crate::rig::{Character, Clip, Garment, SkinWeights};
@@ -38,8 +39,9 @@ pub fn read_character(path: &Path, rate: f64) -> Result<Character> {
 
 /// Reads a garment modelled on a character in its canonical pose; `scale` = `metres_per_unit` of that character.
 ///
-/// Mesh nodes are placed by their world transforms; skinned ones by their skin, as characters are.
-pub fn read_garment(path: &Path, scale: f64) -> Result<Garment> {
+/// Mesh nodes are placed by their world transforms; skinned ones by their skin, as characters are. The vertex attribute
+/// `_PIN` (scalar; more than a half: pinned) names the vertices that are sprung to the body.
+pub fn read_garment(path: &Path, scale: f64) -> Result<(Garment, Source)> {
     let file = File::open(path)?;
     garment(&file, scale).map_err(|reason| Error::File { path: path.into(), reason })
 }
@@ -87,9 +89,9 @@ fn body(parts: &[Part], skeleton: &Skeleton, canonical: DAffine3, scale: f64) ->
 
 /// `to_world` tells whether the part is mirrored on its way, and its triangles must turn.
 fn add(soup: &mut Soup, part: &Part, positions: Vec<DVec3>, weights: Vec<SkinWeights>, to_world: DAffine3) {
-    let (uv, triangles, colour) = (part.uv.clone(), part.triangles.clone(), part.colour.clone());
+    let Part { uv, pinned, triangles, colour, .. } = part.clone();
     let turn = to_world.matrix3.determinant() < 0.0;
-    soup.add(Soup { positions, weights, uv, triangles, colour }, turn);
+    soup.add(Soup { positions, weights, uv, pinned, triangles, colour, ..Soup::default() }, turn);
 }
 
 /// 1 for an extent of 0.1 to 10, else the power of ten that brings it to between 1 and 10 metres.
@@ -136,7 +138,7 @@ fn clips(file: &File, nodes: &Nodes, skeleton: &Skeleton, rate: f64, scale: f64)
     Ok(clips)
 }
 
-fn garment(file: &File, scale: f64) -> Read<Garment> {
+fn garment(file: &File, scale: f64) -> Read<(Garment, Source)> {
     if !(scale.is_finite() && scale > 0.0) {
         return Err(format!("wanted a positive scale in metres per unit, found {scale}"));
     }
@@ -165,7 +167,7 @@ fn garment(file: &File, scale: f64) -> Read<Garment> {
     if welded.mesh.triangles.is_empty() {
         return Err("holds no garment: no mesh with a triangle that has an area".to_string());
     }
-    Ok(Garment { mesh: welded.mesh, surface: welded.surface })
+    Ok((Garment { mesh: welded.mesh, surface: welded.surface, pins: welded.pins }, welded.source))
 }
 
 #[cfg(test)]

@@ -11,6 +11,7 @@ use ::gltf::{Primitive, Semantic};
 use glam::{DVec2, DVec3};
 
 /// One primitive of one mesh node, in the mesh's own space.
+#[derive(Clone)]
 pub(super) struct Part {
     /// The node that holds the mesh.
     pub node: usize,
@@ -22,6 +23,8 @@ pub(super) struct Part {
     pub uv: Vec<DVec2>,
     /// [v], joints as the skin numbers them; empty lists where a vertex has no weight; empty without a skin.
     pub weights: Vec<SkinWeights>,
+    /// [v] whether a vertex is sprung to the body, or empty.
+    pub pinned: Vec<bool>,
     /// Indices of the vertices above.
     pub triangles: Vec<[u32; 3]>,
     /// [v] linear RGB.
@@ -33,11 +36,14 @@ pub(super) fn read(file: &File) -> Read<Vec<Part>> {
     let mut painter = Painter::new(file);
     let mut parts = Vec::new();
     for node in file.document.nodes() {
-        for primitive in node.mesh().iter().flat_map(|mesh| mesh.primitives()) {
+        let mesh = node.mesh();
+        for primitive in mesh.iter().flat_map(|mesh| mesh.primitives()) {
+            let pins = mesh.iter().find_map(|mesh| file.pins.get(&(mesh.index(), primitive.index())));
             let place = |reason| format!("mesh node {} ({}): {reason}", node.index(), node.name().unwrap_or("unnamed"));
             let skin = node.skin().map(|skin| (skin.index(), skin.joints().count()));
             if let Some(part) = read_primitive(file, &primitive, node.index(), skin, &mut painter).map_err(place)? {
-                parts.push(part);
+                let pinned = pinned(file, pins, part.positions.len()).map_err(place)?;
+                parts.push(Part { pinned, ..part });
             }
         }
     }
@@ -74,7 +80,25 @@ fn read_primitive(
     let own = vertex_colours(file, primitive, positions.len())?;
     let mut colour = painter.paint(&material, &uv, &triangles, positions.len());
     colour.iter_mut().zip(&own).for_each(|(colour, own)| *colour = std::array::from_fn(|i| colour[i] * own[i]));
-    Ok(Some(Part { node, skin: skin.map(|(index, _)| index), positions, uv, weights, triangles, colour }))
+    Ok(Some(Part {
+        node,
+        skin: skin.map(|(index, _)| index),
+        positions,
+        uv,
+        weights,
+        pinned: Vec::new(),
+        triangles,
+        colour,
+    }))
+}
+
+/// The attribute `_PIN`: more than a half is pinned. [v], or empty without it.
+fn pinned(file: &File, accessor: Option<&usize>, vertices: usize) -> Read<Vec<bool>> {
+    let Some(&index) = accessor else { return Ok(Vec::new()) };
+    let accessor = file.document.accessors().nth(index).ok_or_else(|| format!("_PIN: there is no accessor {index}"))?;
+    let pins = file.components(&accessor, Dimensions::Scalar, "_PIN")?;
+    check_count("_PIN", pins.len(), vertices, false)?;
+    Ok(pins.iter().map(|pin| *pin > 0.5).collect())
 }
 
 /// COLOR_0, linear RGB in [0, 1]; empty where there is none. glTF 2.0 §3.7.2.1.

@@ -18,10 +18,16 @@ pub(super) struct Soup {
     pub weights: Vec<SkinWeights>,
     /// [v], or fewer when a part has none.
     pub uv: Vec<DVec2>,
+    /// [v]: whether sprung to the body; empty in a part that has no pins.
+    pub pinned: Vec<bool>,
     /// Three vertices per triangle.
     pub triangles: Vec<[u32; 3]>,
     /// Linear RGB per vertex. [v]
     pub colour: Vec<[f32; 3]>,
+    /// [v] number of each vertex in the file, counted through its parts.
+    pub numbers: Vec<u32>,
+    /// Numbers of vertices that no triangle uses.
+    pub unused: Vec<u32>,
 }
 
 /// A welded mesh, its weights, and the surface that draws it.
@@ -32,11 +38,27 @@ pub(super) struct Welded {
     pub weights: Vec<SkinWeights>,
     /// All triangles, the degenerate too.
     pub surface: Surface,
+    /// Mesh vertices of which a copy is pinned, ascending.
+    pub pins: Vec<u32>,
+    /// Where it came from.
+    pub source: Source,
+}
+
+/// How a mesh's vertices are numbered in its file (counted from 0 through all its parts), and what was left out.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Source {
+    /// Vertex of the file (the first of its copies) per vertex of the mesh.
+    pub numbers: Vec<u32>,
+    /// Vertices of the file that no triangle uses.
+    pub unused: Vec<u32>,
+    /// Triangles without an area, by vertices of the file.
+    pub degenerate: Vec<[u32; 3]>,
 }
 
 impl Soup {
     /// Adds a part; indices are counted from its first vertex. Vertices that no triangle uses are dropped.
     pub fn add(&mut self, part: Soup, turn: bool) {
+        let first = (self.numbers.len() + self.unused.len()) as u32;
         let mut place: Vec<Option<u32>> = vec![None; part.positions.len()];
         for triangle in &part.triangles {
             let mut corners = triangle.map(|corner| {
@@ -46,6 +68,8 @@ impl Soup {
                     self.weights.push(part.weights.get(old).cloned().unwrap_or_default());
                     self.uv.extend(part.uv.get(old));
                     self.colour.extend(part.colour.get(old));
+                    self.pinned.push(part.pinned.get(old).copied().unwrap_or_default());
+                    self.numbers.push(first + corner);
                     self.positions.len() as u32 - 1
                 })
             });
@@ -54,6 +78,7 @@ impl Soup {
             }
             self.triangles.push(corners);
         }
+        self.unused.extend((first..).zip(&place).filter(|(_, place)| place.is_none()).map(|(number, _)| number));
     }
 
     /// Largest side of the bounding box, metres.
@@ -88,12 +113,21 @@ impl Soup {
         let positions: Vec<DVec3> = kept.iter().map(|&at| self.positions[at]).collect();
         let mut triangles: Vec<[u32; 3]> =
             self.triangles.iter().map(|t| t.map(|corner| vertex[corner as usize])).collect();
+        let flat = |(triangle, _): &(&[u32; 3], &[u32; 3])| degenerate(**triangle, &positions, cell);
+        let flat = triangles.iter().zip(&self.triangles).filter(flat);
+        let flat = flat.map(|(_, drawn)| drawn.map(|corner| self.numbers[corner as usize])).collect();
         triangles.retain(|&triangle| !degenerate(triangle, &positions, cell));
+        let mut pins: Vec<u32> = (0..vertex.len()).filter(|&at| self.pinned[at]).map(|at| vertex[at]).collect();
+        pins.sort_unstable();
+        pins.dedup();
+        let numbers = kept.iter().map(|&at| self.numbers[at]).collect();
         let uv = if self.uv.len() == self.positions.len() { self.uv } else { Vec::new() };
         Welded {
             mesh: Mesh { positions, triangles },
             weights: kept.iter().map(|&at| self.weights[at].clone()).collect(),
             surface: Surface { vertex, uv, triangles: self.triangles, colour: self.colour },
+            pins,
+            source: Source { numbers, unused: self.unused, degenerate: flat },
         }
     }
 }

@@ -69,10 +69,20 @@ pub fn write_character(path: &Path, character: &Character, appearance: &Appearan
     file.save(path, document)
 }
 
-/// Writes a garment as GLB, in metres.
+/// Writes a garment as GLB, in metres; its pins as the attribute `_PIN`, 1 or 0 per vertex.
 pub fn write_garment(path: &Path, garment: &Garment) -> Result<()> {
     let mut file = Writer::default();
-    let primitives = file.primitives(&garment.mesh, &garment.surface, &Appearance::default(), None);
+    let mut primitives = file.primitives(&garment.mesh, &garment.surface, &Appearance::default(), None);
+    if !garment.pins.is_empty() {
+        let Garment { mesh, surface, pins } = garment;
+        let plain = surface.triangles.is_empty();
+        let vertex = if plain { (0..mesh.positions.len() as u32).collect() } else { surface.vertex.clone() };
+        let pinned = vertex.iter().map(|at| f64::from(u8::from(pins.contains(at))));
+        let pinned = file.floats("SCALAR", 1, pinned);
+        for primitive in primitives.as_array_mut().into_iter().flatten() {
+            primitive["attributes"]["_PIN"] = json!(pinned);
+        }
+    }
     let document = json!({
         "scene": 0, "scenes": [{ "nodes": [0] }], "nodes": [{ "name": "garment", "mesh": 0 }],
         "meshes": [{ "name": "garment", "primitives": primitives }],

@@ -1,6 +1,11 @@
 //! Motion for the skeletons the project knows, generated: posture(t) -> G_j(t), each clip closed and C¹; simulation.md §5.
 
+mod bones;
+mod curve;
 pub mod humanoid;
+pub mod quadruped;
+mod rigid;
+pub mod swimmer;
 
 use crate::rig::{Character, Clip, Pose};
 use crate::{Error, Result};
@@ -12,7 +17,12 @@ pub const RATE: f64 = 30.0;
 type Kind = (&'static str, fn(&Character, f64) -> Result<Vec<Clip>>);
 
 /// Tried in turn.
-const KINDS: &[Kind] = &[("two arms and two legs", humanoid::clips)];
+const KINDS: &[Kind] = &[
+    ("two arms and two legs", humanoid::clips),
+    ("four legs", quadruped::clips),
+    ("fins and flukes", swimmer::clips),
+    ("one joint", rigid::clips),
+];
 
 /// Every clip for `character` at `rate` poses per second, of the first kind of body its skeleton fits.
 /// Each ends with the posture it began with, up to rounding.
@@ -36,3 +46,6 @@ fn sample(name: &str, period: f64, rate: f64, pose: impl Fn(f64) -> Pose) -> Cli
     let poses = (0..=frames as usize).map(|frame| pose(period * frame as f64 / frames)).collect();
     Clip { name: name.to_string(), rate: frames / period, poses }
 }
+
+#[cfg(test)]
+mod tests;

@@ -127,6 +127,39 @@ impl Neighbourhood {
         });
     }
 
+    /// Joins the vertices of every pair that `motion` [n] would bring nearer than `nearest` metres: they move by the mean of all
+    /// they are joined with (impact zones, Provot 1997). Whether there were any.
+    pub fn join(&self, x: &[DVec3], motion: &mut [DVec3], nearest: f64) -> bool {
+        let end: Vec<DVec3> = x.iter().zip(motion.iter()).map(|(x, d)| *x + *d).collect();
+        let mut zone: Vec<usize> = (0..x.len()).collect();
+        let root = |zone: &[usize], mut i: usize| {
+            while zone[i] != i {
+                i = zone[i];
+            }
+            i
+        };
+        let mut any = false;
+        for pair in &self.pairs {
+            let close = pair.distance(&end) < nearest.min(0.9 * pair.distance(x));
+            if close || pair.time_of_impact(x, motion, 1.0) < 1.0 {
+                any = true;
+                let roots = pair.vertices().map(|i| root(&zone, i));
+                let first = roots.into_iter().min().unwrap_or(roots[0]);
+                roots.into_iter().for_each(|i| zone[i] = first);
+            }
+        }
+        let mut sums = vec![(DVec3::ZERO, 0.0); x.len()];
+        for (i, motion) in motion.iter().enumerate() {
+            let sum = &mut sums[root(&zone, i)];
+            *sum = (sum.0 + *motion, sum.1 + 1.0);
+        }
+        for (i, motion) in motion.iter_mut().enumerate() {
+            let (sum, count) = sums[root(&zone, i)];
+            *motion = sum / count;
+        }
+        any
+    }
+
     /// The share of `motion` from `x` that no pair objects to.
     pub fn clear_way(&self, x: &[DVec3], motion: &[DVec3]) -> f64 {
         self.pairs.iter().fold(1.0, |limit, pair| pair.time_of_impact(x, motion, limit))

@@ -10,6 +10,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+use self::detection::Touch;
 pub(super) use self::layout::Layout;
 use super::cloth::Cloth;
 use super::contact::{Contact, Pin};
@@ -27,10 +28,6 @@ const GROWTH: f64 = 1.6;
 /// one is indefinite more often than not.
 const EXACT_ABOVE: f64 = 10.0;
 
-/// One vertex in this many may stay restless: in a crease of the body the closest point jumps from side to side, and the few
-/// vertices there keep a whole cloth, at rest everywhere else, from ever counting as converged (300 iterations did not help).
-const RESTLESS: usize = 200;
-
 /// Time step under which the proximal term alone keeps a cloth still, seconds.
 const HOLDING: f64 = 0.05;
 
@@ -40,7 +37,7 @@ const WINDOW: usize = 10;
 /// The state of a cloth between two iterations.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Probe {
-    /// RMS static force per vertex, in mean vertex weights, the most restless half per cent left out.
+    /// RMS static force per vertex, in mean vertex weights.
     pub residual: f64,
     /// Least signed distance, metres (infinite without contact).
     pub least_distance: f64,
@@ -70,8 +67,8 @@ pub(super) struct Solver<'a> {
     contacts: Vec<Contact>,
     /// Vertices held in place.
     pub pins: Vec<Pin>,
-    /// Whether contacts that give way are stiffened: at rest, not while the body moves.
-    pub stiffening: bool,
+    /// Whether the body is at rest: what it pinches then stays let go.
+    resting: bool,
     /// Whether the Hessian is exact rather than convexified.
     exact: bool,
     /// Vertices inside the body at the last detection.
@@ -82,10 +79,9 @@ pub(super) struct Solver<'a> {
     /// Contact stiffness per mass, 1/s² [n].
     stiffness: Vec<f64>,
     /// Vertices let go because the body has no room for them [n].
-    pub pinched: Vec<bool>,
-    /// Normals of the last contact planes, and how often they have changed since the body came to rest [n].
-    planes: Vec<[DVec3; 2]>,
-    changes: Vec<u32>,
+    pinched: Vec<bool>,
+    /// Planes of the body each vertex has met where it is [n].
+    touches: Vec<Vec<Touch>>,
     /// Lower bound of the distance to the body [n].
     clearance: Vec<f64>,
 }
@@ -106,15 +102,14 @@ impl<'a> Solver<'a> {
             tracked: vec![None; n],
             contacts: Vec::new(),
             pins: Vec::new(),
-            stiffening: false,
+            resting: false,
             exact: false,
             inside: 0,
             iterations: 0,
             gradient: vec![DVec3::ZERO; n],
             stiffness: vec![settings.contact_stiffness; n],
             pinched: vec![false; n],
-            planes: vec![[DVec3::ZERO; 2]; n],
-            changes: vec![0; n],
+            touches: vec![Vec::new(); n],
             clearance: vec![0.0; n],
         }
     }
@@ -123,20 +118,19 @@ impl<'a> Solver<'a> {
     pub fn moved(&mut self) {
         self.clearance.fill(0.0);
         self.pinched.fill(false);
+        self.touches.iter_mut().for_each(Vec::clear);
     }
 
     /// Contacts, static forces and the Hessian for the proximal time step `h` seconds, against the posed body, if any.
     pub fn probe(&mut self, body: Option<&PosedBody>, h: f64) -> Probe {
         let least_distance = self.detect(body);
         self.assemble(h);
-        let mut squares: Vec<f64> = self.gradient.iter().map(|g| g.length_squared()).collect();
-        let calm = squares.len() - squares.len() / RESTLESS;
-        squares.sort_unstable_by(f64::total_cmp);
-        let square: f64 = squares[..calm].iter().sum();
-        let residual = (square / calm as f64).sqrt() / self.cloth.mean_weight();
+        let square: f64 = self.gradient.iter().map(|g| g.length_squared()).sum();
+        let residual = (square / self.gradient.len() as f64).sqrt() / self.cloth.mean_weight();
         Probe { residual, least_distance, inside: self.inside, drift: f64::INFINITY }
     }
 
+    #[cfg(test)]
     /// Least distance of cloth from cloth among the pairs that are near, metres.
     pub fn nearest_layers(&self) -> f64 {
         let distance = |pair: &Pair| pair.distance(&self.positions);
@@ -154,7 +148,7 @@ impl<'a> Solver<'a> {
     pub fn relax(&mut self, body: Option<&PosedBody>, iterations: usize) -> Probe {
         let mut h = FIRST_TIME_STEP;
         let (mut before, mut shortest, mut drift) = (self.positions.clone(), h, f64::INFINITY);
-        self.stiffening = true;
+        self.resting = true;
         for iteration in 1..=iterations {
             self.exact = h > EXACT_ABOVE;
             let probe = self.probe(body, h);
@@ -172,7 +166,7 @@ impl<'a> Solver<'a> {
                 let moved = (moves.sum::<f64>() / before.len() as f64).sqrt();
                 // A short time step holds the cloth whatever pulls at it, and proves nothing.
                 drift = if shortest < HOLDING { f64::INFINITY } else { moved };
-                if drift < 0.3 * self.settings.drift {
+                if drift < 0.1 * self.settings.drift {
                     break;
                 }
                 (before, shortest) = (self.positions.clone(), h);

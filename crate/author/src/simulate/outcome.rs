@@ -23,6 +23,11 @@ pub struct Outcome {
     pub positions: Vec<DVec3>,
     /// RMS static force per vertex, in mean vertex weights.
     pub residual: f64,
+    /// RMS move of the vertices over the last ten iterations, metres; zero where the residual alone says that it is at rest, infinite
+    /// where the cloth was still held by a short time step.
+    pub drift: f64,
+    /// Pairs of cloth triangles that cross each other.
+    pub crossings: usize,
     /// 99th percentile of the largest principal stretch over the triangles (1: unstretched).
     pub stretch_p99: f64,
     /// Largest principal stretch.

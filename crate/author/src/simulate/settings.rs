@@ -48,7 +48,7 @@ impl Default for Settings {
             path_time_step: 0.05,
             relax_iterations: 200,
             residual: 1e-2,
-            drift: 5e-4,
+            drift: 1e-4,
             caught: 0.02,
             stretch_limit: 2.5,
             attached: Vec::new(),

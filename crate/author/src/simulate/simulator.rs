@@ -49,13 +49,22 @@ impl Simulator {
 
     /// The template `T_C`: the garment at rest on the canonical body, metres in canonical space [n].
     pub fn drape(&self) -> Result<Vec<DVec3>> {
+        let crossings = self.cloth.elements.crossings(&self.rest);
+        if let Some([a, b]) = crossings.first() {
+            let count = crossings.len();
+            let reason = format!(
+                "triangles {a} and {b} cross: wanted a garment that does not cut through itself, found {count} such pairs"
+            );
+            return Err(Error::Garment(reason));
+        }
         let pose = self.character.canonical_pose();
         let body = self.collider.pose(&self.character.skinning(&pose));
         let mut solver = Solver::new(&self.cloth, &self.layout, &self.settings, self.rest.clone());
         self.pin(&mut solver, &self.rest, &self.character.skinning(&pose));
         let relaxed = solver.relax(Some(&body), 10 * self.settings.relax_iterations);
-        match self.judge(&solver, &relaxed) {
-            Status::Converged => Ok(solver.positions),
+        let Outcome { status, positions, .. } = self.outcome(solver, relaxed);
+        match status {
+            Status::Converged => Ok(positions),
             Status::Rejected { reason } => Err(Error::Simulation(format!("canonical drape: {reason}"))),
         }
     }
@@ -80,9 +89,14 @@ impl Simulator {
             let skinning = self.character.skinning(&pair[1]);
             body = self.collider.pose(&skinning);
             self.pin(&mut solver, template, &skinning);
-            for _ in 0..self.settings.path_iterations {
+            let mut share = 0.0;
+            // Cloth that is held up by cloth gets more iterations.
+            for iteration in 0..3 * self.settings.path_iterations {
+                if iteration >= self.settings.path_iterations && share > 0.3 {
+                    break;
+                }
                 solver.probe(Some(&body), self.settings.path_time_step);
-                solver.advance(self.settings.path_time_step);
+                share = solver.advance(self.settings.path_time_step);
             }
         }
         let relaxed = solver.relax(Some(&body), self.settings.relax_iterations);
@@ -99,45 +113,48 @@ impl Simulator {
         solver.pins = self.attached.iter().map(pin).collect();
     }
 
-    fn judge(&self, solver: &Solver, relaxed: &Probe) -> Status {
+    fn judge(&self, outcome: &Outcome, inside: usize) -> Status {
         let reject = |reason| Status::Rejected { reason };
-        if !relaxed.residual.is_finite() || solver.positions.iter().any(|p| !p.is_finite()) {
+        let Outcome { residual, drift, crossings, stretch_max, .. } = *outcome;
+        if !residual.is_finite() || outcome.positions.iter().any(|p| !p.is_finite()) {
             return reject("wanted finite forces, found none".into());
         }
-        let Settings { residual, drift, caught, .. } = self.settings;
-        if relaxed.residual > residual && relaxed.drift > drift {
-            let (found, moved) = (relaxed.residual, 1e3 * relaxed.drift);
+        let wanted = &self.settings;
+        if residual > wanted.residual && drift > wanted.drift {
             return reject(format!(
-                "residual: wanted below {residual}, found {found:.4}, still moving by {moved:.2} mm"
+                "residual: wanted below {}, found {residual:.4}, still moving by {:.2} mm",
+                wanted.residual,
+                1e3 * drift
             ));
         }
-        if relaxed.inside as f64 > caught * solver.positions.len() as f64 {
-            let (found, depth) = (relaxed.inside, -1e3 * relaxed.least_distance);
-            return reject(format!("wanted no vertex inside the body, found {found}, {depth:.2} mm deep"));
+        if inside as f64 > wanted.caught * outcome.positions.len() as f64 {
+            let depth = -1e3 * outcome.least_distance;
+            return reject(format!("wanted no vertex inside the body, found {inside}, {depth:.2} mm deep"));
         }
-        let crossings = self.cloth.elements.crossings(&solver.positions).len();
         if crossings > 0 {
             return reject(format!("wanted no cloth through cloth, found {crossings} pairs of triangles that cross"));
         }
-        let (_, largest) = stretch(&self.cloth, &solver.positions);
-        if largest > self.settings.stretch_limit {
-            return reject(format!("stretch: wanted below {}, found {largest:.3}", self.settings.stretch_limit));
+        if stretch_max > wanted.stretch_limit {
+            return reject(format!("stretch: wanted below {}, found {stretch_max:.3}", wanted.stretch_limit));
         }
         Status::Converged
     }
 
     fn outcome(&self, solver: Solver, relaxed: Probe) -> Outcome {
-        let status = self.judge(&solver, &relaxed);
         let (stretch_p99, stretch_max) = stretch(&self.cloth, &solver.positions);
-        Outcome {
+        let mut outcome = Outcome {
             residual: relaxed.residual,
+            drift: relaxed.drift,
+            crossings: self.cloth.elements.crossings(&solver.positions).len(),
             stretch_p99,
             stretch_max,
             least_distance: relaxed.least_distance,
             iterations: solver.iterations,
-            status,
+            status: Status::Converged,
             positions: solver.positions,
-        }
+        };
+        outcome.status = self.judge(&outcome, relaxed.inside);
+        outcome
     }
 
     /// An outcome for input that cannot be simulated: the garment as given.
@@ -145,9 +162,17 @@ impl Simulator {
         let frame = body_frame(&self.character, &self.character.canonical_pose());
         let positions: Vec<DVec3> = self.rest.iter().map(|p| frame.transform_point3(*p)).collect();
         let (stretch_p99, stretch_max) = stretch(&self.cloth, &positions);
-        let (residual, least_distance) = (f64::INFINITY, f64::INFINITY);
-        let status = Status::Rejected { reason };
-        Outcome { positions, residual, stretch_p99, stretch_max, least_distance, iterations: 0, status }
+        Outcome {
+            positions,
+            residual: f64::INFINITY,
+            drift: f64::INFINITY,
+            crossings: 0,
+            stretch_p99,
+            stretch_max,
+            least_distance: f64::INFINITY,
+            iterations: 0,
+            status: Status::Rejected { reason },
+        }
     }
 }
 

@@ -57,7 +57,7 @@ pub(super) fn transport(solver: &mut Solver, body: &PosedBody, motion: &[DAffine
             shift[i] = (target[i] * hold[i] + mean * SMOOTHING) / (hold[i] + SMOOTHING);
         }
     }
-    solver.carry(&shift);
+    solver.carry(shift);
     for i in 0..n {
         solver.anchors[i] = solver.positions[i] + lag[i];
     }

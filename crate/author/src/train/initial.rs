@@ -9,7 +9,6 @@ use ctsn_core::device::Space;
 use ctsn_core::model::{HostModel, Layer, Linear, Reference, Sizes, Skin};
 use ctsn_core::pose::{BodyFrame, Frame, Rig};
 use ctsn_core::topology::Graph;
-use kiddo::{ImmutableKdTree, SquaredEuclidean};
 
 /// Sizes of the network that are free to choose.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,7 +51,7 @@ pub fn initial(setup: &Setup, train: &[&Sample], architecture: Architecture, see
     }
     let mut rng = fastrand::Rng::with_seed(seed);
     let graph = Graph::new(n, &setup.triangles);
-    let nearest = nearest(&setup.body, &setup.template)?;
+    let nearest = setup.nearest()?;
     let frames = frames(setup, train)?;
     let inputs = |l: usize| if l == 0 { 3 } else { features };
     Ok(HostModel {
@@ -71,14 +70,6 @@ pub fn initial(setup: &Setup, train: &[&Sample], architecture: Architecture, see
         surface: Some(setup.surface.clone()).filter(|surface| !surface.vertex.is_empty()),
         training: None,
     })
-}
-
-/// Index of the body vertex nearest to each cloth vertex.
-fn nearest(body: &[f32], cloth: &[f32]) -> Result<Vec<usize>> {
-    let tree: ImmutableKdTree<f32, 3> = ImmutableKdTree::new_from_slice(body.as_chunks::<3>().0)
-        .map_err(|error| Error::Training(format!("body vertices: {error}")))?;
-    let query = |vertex: &[f32; 3]| tree.query(vertex).nearest_one::<SquaredEuclidean<f32>>().execute().item as usize;
-    Ok(cloth.as_chunks::<3>().0.iter().map(query).collect())
 }
 
 fn rig(setup: &Setup) -> Result<Rig> {

@@ -143,8 +143,7 @@ fn tiny() -> (HostModel, Setup, Vec<Sample>) {
         let transforms = &body.transforms;
         cpu::skin::skin(Level::new(), &model.rest, &skin.joints, &skin.weights, transforms, Space::Body, &mut truth);
         truth.iter_mut().for_each(|x| *x += 0.1 * (rng.f32() - 0.5));
-        let record =
-            Record { clip: 0, frame, rejected: None, residual: 0.0, stretch: 1.0, distance: 0.0, seconds: 0.0 };
+        let record = Record { frame, ..Record::default() };
         Sample { record, joints: joints.to_vec(), truth }
     };
     let samples = poses.chunks_exact(36).enumerate().map(sample).collect();
@@ -156,7 +155,7 @@ fn tiny() -> (HostModel, Setup, Vec<Sample>) {
         joints: model.rig.joints.clone(),
         root: model.rig.root,
         inverse_bind: model.rig.inverse_bind.iter().map(|transform| transform.to_vec()).collect(),
-        material: "none".to_owned(),
+        ..Description::default()
     };
     let setup = Setup {
         description,

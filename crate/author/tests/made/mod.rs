@@ -106,15 +106,26 @@ pub fn write_character(folder: &Folder, change: impl FnOnce(&mut Character)) {
 
 /// Writes `garment.glb`: an open box around the character's, `away` metres from where it is worn.
 pub fn write_garment(folder: &Folder, away: DVec3) {
-    let mut mesh = cuboid(DVec3::new(0.17, 0.2, 0.17), 6);
-    let inside = |triangle: &[u32; 3]| triangle.iter().any(|i| mesh.positions[*i as usize].y.abs() < 0.19);
-    let triangles: Vec<_> = mesh.triangles.iter().filter(|triangle| inside(triangle)).copied().collect();
-    let kept: std::collections::BTreeSet<u32> = triangles.iter().flatten().copied().collect();
-    let index: Vec<u32> = kept.into_iter().collect();
+    let mesh = cuboid(DVec3::new(0.17, 0.2, 0.17), 6);
+    write_part(folder, &mesh, away, |corners| corners.iter().any(|corner| corner.y.abs() < 0.19));
+}
+
+/// Writes `garment.glb`: a blanket that lies on top of the character's box.
+pub fn write_blanket(folder: &Folder) {
+    let mesh = cuboid(DVec3::new(0.12, 0.604, 0.12), 6);
+    write_part(folder, &mesh, DVec3::ZERO, |corners| corners.iter().all(|corner| corner.y > 0.6));
+}
+
+/// Writes the triangles of `mesh` whose corners `kept` wants, moved by `away`.
+fn write_part(folder: &Folder, mesh: &Mesh, away: DVec3, kept: impl Fn([DVec3; 3]) -> bool) {
+    let wanted = |triangle: &&[u32; 3]| kept(triangle.map(|i| mesh.positions[i as usize]));
+    let triangles: Vec<_> = mesh.triangles.iter().filter(wanted).copied().collect();
+    let index: std::collections::BTreeSet<u32> = triangles.iter().flatten().copied().collect();
+    let index: Vec<u32> = index.into_iter().collect();
     let place = |i: u32| index.binary_search(&i).expect("a kept vertex") as u32;
-    mesh.triangles = triangles.iter().map(|triangle| triangle.map(place)).collect();
-    mesh.positions = index.iter().map(|i| mesh.positions[*i as usize] + away).collect();
-    let mut garment = Garment { mesh, ..Garment::default() };
+    let mut garment = Garment::default();
+    garment.mesh.triangles = triangles.iter().map(|triangle| triangle.map(place)).collect();
+    garment.mesh.positions = index.iter().map(|i| mesh.positions[*i as usize] + away).collect();
     garment.surface.vertex = (0..garment.mesh.positions.len() as u32).collect();
     garment.surface.triangles.clone_from(&garment.mesh.triangles);
     gltf::write_garment(&folder.path("garment.glb"), &garment).expect("a garment written");

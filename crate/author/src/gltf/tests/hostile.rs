@@ -189,7 +189,7 @@ fn read_both(bytes: &[u8]) -> (bool, bool) {
     }
     let garment = garment(&file, 1.0).ok();
     if let Some(garment) = &garment {
-        assert!(garment.mesh.positions.iter().all(|p| p.is_finite()));
+        assert!(garment.0.mesh.positions.iter().all(|p| p.is_finite()));
     }
     (character.is_some(), garment.is_some())
 }

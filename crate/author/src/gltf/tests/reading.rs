@@ -63,9 +63,9 @@ fn a_garment_survives_writing_and_reading() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("garment.glb");
     let source = tube();
-    let garment = Garment { mesh: source.body, surface: source.surface };
+    let garment = Garment { mesh: source.body, surface: source.surface, pins: Vec::new() };
     write_garment(&path, &garment).unwrap();
-    let read = read_garment(&path, 0.5).unwrap();
+    let (read, _) = read_garment(&path, 0.5).unwrap();
     assert_eq!(read.mesh.triangles.len(), garment.mesh.triangles.len());
     assert_eq!(read.surface.uv.len(), garment.surface.vertex.len());
     let doubled: Vec<DVec3> = read.mesh.positions.iter().map(|p| *p * 2.0).collect();

@@ -9,6 +9,10 @@ const LONGEST_MOVE: f64 = 0.03;
 /// Steps with an old factor after each Newton step.
 const CORRECTIONS: usize = 2;
 
+/// Share of the barrier's offset that being carried along leaves between layers, and how often vertices are joined for that.
+const NEAREST: f64 = 0.5;
+const ZONE_ROUNDS: usize = 6;
+
 impl Solver<'_> {
     /// Solves for the Newton step and takes the share of it that lowers the energy.
     pub(super) fn descend(&mut self, h: f64) -> f64 {
@@ -55,13 +59,19 @@ impl Solver<'_> {
         }
     }
 
-    /// Moves the cloth by `motion` [n] as far as it does not run into itself; the share made.
-    pub fn carry(&mut self, motion: &[DVec3]) -> f64 {
-        self.look_ahead(motion);
-        let share = self.neighbourhood.clear_way(&self.positions, motion);
-        self.positions.iter_mut().zip(motion).for_each(|(x, d)| *x += *d * share);
+    /// Moves the cloth by `motion` [n], vertices that would run into each other together.
+    pub fn carry(&mut self, mut motion: Vec<DVec3>) {
+        self.look_ahead(&motion);
+        let nearest = NEAREST * self.cloth.gap;
+        for _ in 0..ZONE_ROUNDS {
+            if !self.neighbourhood.join(&self.positions, &mut motion, nearest) {
+                break;
+            }
+            self.look_ahead(&motion);
+        }
+        let share = self.neighbourhood.clear_way(&self.positions, &motion);
+        self.positions.iter_mut().zip(&motion).for_each(|(x, d)| *x += *d * share);
         self.neighbourhood.follow(share);
-        share
     }
 
     /// `Σ m |x - x₀|² / 2h²`.

@@ -12,19 +12,36 @@ const MARGIN: f64 = 0.015;
 /// Factor by which a contact that gave way too far is stiffened, and how often it may be.
 const STIFFENING: f64 = 3.0;
 const STIFFEST: f64 = 30.0;
-/// Changes of contact planes after which a vertex is let go.
-const MOST_CHANGES: u32 = 8;
+/// A vertex keeps a contact plane until it is this far from where it met it, metres. With the nearest plane only, vertices in a
+/// crease jumped from side to side for good, and a cloth at rest everywhere else never counted as converged.
+const MEMORY: f64 = 0.001;
+/// Planes whose normals have a larger cosine are one side of the body.
+const SAME_SIDE: f64 = 0.95;
+
+/// Planes whose normals have a smaller cosine face each other.
+const FACING: f64 = -0.7;
+
+/// A plane of the body that a vertex has met.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Touch {
+    normal: DVec3,
+    /// `d(x) = normal · x - plane`.
+    plane: f64,
+    /// Where the vertex was.
+    at: DVec3,
+}
 
 impl Solver<'_> {
     /// Finds the contact planes; the least signed distance of a vertex that is not pinched.
     pub(super) fn detect(&mut self, body: Option<&PosedBody>) -> f64 {
         let mut least = f64::INFINITY;
         let thickness = self.settings.thickness;
+        let room = 2.0 * thickness + self.cloth.gap;
         self.contacts.clear();
         self.inside = 0;
         let Some(body) = body else { return least };
         for i in 0..self.positions.len() {
-            if self.clearance[i] > thickness + MARGIN || self.stiffening && self.pinched[i] {
+            if self.clearance[i] > thickness + MARGIN || self.resting && self.pinched[i] {
                 continue;
             }
             let (x, reach) = (self.positions[i], thickness + 2.0 * MARGIN);
@@ -32,46 +49,63 @@ impl Solver<'_> {
             self.clearance[i] = hit.map_or(reach, |hit| hit.distance.max(0.0));
             let Some(hit) = hit.filter(|hit| hit.distance < thickness + MARGIN) else { continue };
             self.tracked[i] = Some(hit.face);
-            self.pinched[i] = body.is_buried(hit.face, thickness);
+            self.pinched[i] = body.is_buried(hit.face, room);
             if self.pinched[i] {
                 continue;
             }
             least = least.min(hit.distance);
             self.inside += usize::from(hit.distance < 0.0);
             let limit = STIFFEST * self.settings.contact_stiffness;
-            if self.stiffening && hit.distance < 0.25 * thickness && self.stiffness[i] < limit {
+            if hit.distance < 0.25 * thickness && self.stiffness[i] < limit {
                 self.stiffness[i] *= STIFFENING;
             }
-            self.contacts.push(self.contact(i, &hit, self.cloth.friction));
-            let near_crease = hit.distance < 1.5 * thickness;
-            let second = near_crease.then(|| body.across_crease(x, &hit, 2.0 * thickness)).flatten();
-            let second = second.filter(|second| !body.is_buried(second.face, thickness));
-            if let Some(second) = &second {
-                self.contacts.push(self.contact(i, second, 0.0));
+            let second =
+                (hit.distance < 1.5 * thickness).then(|| body.across_crease(x, &hit, 2.0 * thickness)).flatten();
+            let second = second.filter(|second| !body.is_buried(second.face, room));
+            self.remember(i, &hit);
+            second.iter().for_each(|second| self.remember(i, second));
+            if self.resting && self.is_between(i) {
+                self.pinched[i] = true;
+                continue;
             }
-            if self.stiffening && near_crease {
-                self.watch(i, [hit.normal, second.map_or(hit.normal, |second| second.normal)]);
+            for (k, touch) in self.touches[i].iter().enumerate() {
+                // One plane rubs: which one must not depend on which is nearer.
+                let friction = if k == 0 { self.cloth.friction } else { 0.0 };
+                self.contacts.push(self.contact(i, touch, friction));
             }
         }
         least
     }
 
-    /// Lets a vertex go whose contact planes keep changing: a crease of more sides than two planes can describe.
-    fn watch(&mut self, vertex: usize, planes: [DVec3; 2]) {
-        let known = |plane: DVec3| self.planes[vertex].iter().any(|old| *old == DVec3::ZERO || old.dot(plane) > 0.9);
-        if !planes.into_iter().all(known) {
-            self.changes[vertex] += 1;
+    /// Puts a plane in the place of the one on its side, or adds it; forgets those met elsewhere.
+    fn remember(&mut self, vertex: usize, hit: &Hit) {
+        let at = self.positions[vertex];
+        let new = Touch { normal: hit.normal, plane: hit.normal.dot(at) - hit.distance, at };
+        let touches = &mut self.touches[vertex];
+        touches.retain(|touch| touch.at.distance(at) < MEMORY);
+        match touches.iter_mut().find(|touch| touch.normal.dot(new.normal) > SAME_SIDE) {
+            Some(same) => *same = new,
+            None => touches.push(new),
         }
-        self.planes[vertex] = planes;
-        self.pinched[vertex] |= self.changes[vertex] >= MOST_CHANGES;
     }
 
-    fn contact(&self, vertex: usize, hit: &Hit, friction: f64) -> Contact {
+    /// Whether two sides of the body that face each other leave a vertex no room.
+    fn is_between(&self, vertex: usize) -> bool {
+        let touches = &self.touches[vertex];
+        let room = 2.0 * self.settings.thickness;
+        let closed = |a: &Touch, b: &Touch| {
+            let distance = |touch: &Touch| touch.normal.dot(self.positions[vertex]) - touch.plane;
+            a.normal.dot(b.normal) < FACING && distance(a) + distance(b) < room
+        };
+        touches.iter().any(|a| touches.iter().any(|b| closed(a, b)))
+    }
+
+    fn contact(&self, vertex: usize, touch: &Touch, friction: f64) -> Contact {
+        let Touch { normal, plane, .. } = *touch;
         let offset = self.settings.thickness;
         let stiffness = self.stiffness[vertex] * self.cloth.masses[vertex];
-        let force = stiffness * (offset - hit.distance).max(0.0);
-        let plane = hit.normal.dot(self.positions[vertex]) - hit.distance;
-        let (grip, anchor) = (friction * force, self.anchors[vertex]);
-        Contact { vertex, normal: hit.normal, plane, offset, stiffness, grip, anchor }
+        let distance = normal.dot(self.positions[vertex]) - plane;
+        let grip = friction * stiffness * (offset - distance).max(0.0);
+        Contact { vertex, normal, plane, offset, stiffness, grip, anchor: self.anchors[vertex] }
     }
 }

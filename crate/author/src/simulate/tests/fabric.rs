@@ -43,9 +43,11 @@ fn tip_drop(beta: f64, elements: usize) -> f64 {
 #[test]
 fn cantilever_droops_like_the_heavy_elastica() {
     for (beta, wanted) in [(3.0, 0.3396), (8.0, 0.6406), (20.0, 0.8299)] {
-        let drop = tip_drop(beta, 20);
-        eprintln!("cantilever beta {beta}: drop {drop:.4}, exact {wanted}");
-        assert!((drop / wanted - 1.0).abs() < 0.05, "beta {beta}: drop {drop}, wanted {wanted}");
+        for elements in [20, 40] {
+            let drop = tip_drop(beta, elements);
+            eprintln!("cantilever beta {beta}, {elements} elements: drop {drop:.4}, exact {wanted}");
+            assert!((drop / wanted - 1.0).abs() < 0.05, "beta {beta}: drop {drop}, wanted {wanted}");
+        }
     }
 }
 
@@ -85,7 +87,7 @@ fn tension_stretches_by_the_membrane_law() {
     mesh.positions.iter_mut().for_each(|p| *p = DVec3::new(p.z, -p.x, 0.0));
     let width = mesh.positions.last().unwrap().x;
     let length = columns as f64 * edge;
-    for (pull, wanted) in [(5.0, 0.004963), (20.0, 0.019430), (50.0, 0.046681)] {
+    for (pull, wanted) in [(5.0, 0.004963), (10.0, 0.009854), (50.0, 0.046681)] {
         let material = Material { density: 1e-3, ..Material::default() };
         let mut cloth = Cloth::new(&mesh, &down(&mesh), &material, 0.0).unwrap();
         for row in 0..=rows {

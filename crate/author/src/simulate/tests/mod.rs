@@ -1,5 +1,7 @@
 //! Physics the solver must reproduce, on small scenes made here. simulation.md §3.
 
+mod capstan;
+mod cusick;
 mod energy;
 mod fabric;
 mod friction;

@@ -3,12 +3,12 @@
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
 use super::scene::{legs, skirt};
-use crate::rig::{Character, Garment, Mesh, Pose, Surface};
+use crate::rig::{Character, Garment, Mesh, Pose};
 use crate::simulate::{Material, Settings, Simulator, Status, body_frame, path, to_body_frame};
 
 fn simulator(character: &Character, mesh: Mesh, around: u32) -> crate::Result<Simulator> {
     let settings = Settings { attached: (0..around).collect(), ..Settings::default() };
-    Simulator::new(character, &Garment { mesh, surface: Surface::default() }, Material::default(), settings)
+    Simulator::new(character, &Garment { mesh, ..Garment::default() }, Material::default(), settings)
 }
 
 /// Left thigh forward and out, left knee bent, right thigh back; degrees. The hip turned and moved.

@@ -30,12 +30,21 @@ fn sheet_on_a_sphere_hangs_as_it_should() {
     let error = (wanted.iter().map(|(s, y)| (at(*s) - y).powi(2)).sum::<f64>() / wanted.len() as f64).sqrt();
     let found: Vec<i64> = wanted.iter().map(|(s, _)| at(*s).round() as i64).collect();
     let mean = heights.iter().sum::<f64>() / heights.len() as f64;
+    let edge = |[a, b]: [u32; 2]| {
+        let length = |x: &[glam::DVec3]| x[a as usize].distance(x[b as usize]);
+        length(&solver.positions) / length(&mesh.positions) - 1.0
+    };
+    let edges = mesh.triangles.iter().flat_map(|[a, b, c]| [[*a, *b], [*b, *c], [*c, *a]]);
+    let strain = 100.0 * edges.map(edge).fold(0.0, f64::max);
+    let lowest = heights[0];
     eprintln!(
-        "sphere: residual {:.4}, least {:.2} mm, {} iterations, heights {found:?} mm, mean {mean:.1}, RMS {error:.1} mm",
+        "sphere: lowest {lowest:.1} mm, wanted -232; greatest edge strain {strain:.2} %, wanted at most 1.2; residual {:.4}, least {:.2} mm, {} iterations, heights {found:?} mm, mean {mean:.1}, RMS {error:.1} mm",
         probe.residual,
         1e3 * probe.least_distance,
         solver.iterations
     );
     assert!(probe.residual < settings.residual && probe.least_distance > 0.0);
-    assert!(error < 12.0 && (mean - 90.0).abs() < 8.0, "RMS {error} mm, mean {mean} mm");
+    assert!((lowest + 232.0).abs() <= 5.0, "lowest point {lowest} mm");
+    assert!(strain <= 1.2, "greatest edge strain {strain} %");
+    assert!(error <= 8.0 && (mean - 90.0).abs() < 8.0, "RMS {error} mm, mean {mean} mm");
 }

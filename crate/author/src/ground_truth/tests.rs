@@ -1,0 +1,101 @@
+//! What a dataset knows of its making, how poses are dealt to shards and twins made of them.
+
+use super::*;
+use crate::rig::{Character, Clip, Garment, Joint, Mesh, Surface};
+use crate::simulate::{Material, Settings};
+use glam::DAffine3;
+
+/// A square body with weights written strongest first, and a square of cloth over it.
+fn scene() -> (Character, Garment) {
+    let corners = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::ONE];
+    let mesh = |lift: f64| Mesh {
+        positions: corners.map(|corner| corner * 0.37 + DVec3::Z * lift).to_vec(),
+        triangles: vec![[0, 1, 2], [1, 3, 2]],
+    };
+    let joint = |name: &str, height: f64| Joint {
+        name: name.to_owned(),
+        parent: None,
+        inverse_bind: DAffine3::from_rotation_translation(glam::DQuat::from_rotation_x(0.3), DVec3::Y * height),
+    };
+    let mut character = Character {
+        joints: vec![joint("Hips", 0.1), joint("Spine", 0.7)],
+        root: 0,
+        body: mesh(0.0),
+        weights: vec![vec![(1, 0.7), (0, 0.3)]; 4],
+        surface: Surface::default(),
+        clips: Vec::new(),
+        metres_per_unit: 1.0,
+    };
+    let poses = vec![character.canonical_pose(); 2];
+    character.clips.push(Clip { name: "still".to_owned(), rate: 7.3, poses });
+    (character, Garment { mesh: mesh(0.01), surface: Surface::default() })
+}
+
+#[test]
+fn a_dataset_knows_what_it_was_made_from() {
+    let (character, garment) = scene();
+    let folder = tempfile::tempdir().unwrap();
+    let made = |garment: &Garment| request(&character, garment).setup();
+    made(&garment).write(folder.path()).unwrap();
+    let found = Setup::read(folder.path()).unwrap().unwrap();
+    found.check_same(&made(&garment), folder.path()).unwrap();
+    let mut other = garment.clone();
+    other.mesh.positions[2].y += 1e-3;
+    let refused = |wanted: &Setup| found.check_same(wanted, folder.path()).unwrap_err().to_string();
+    let garment_refused = refused(&made(&other));
+    assert!(garment_refused.contains("another character or garment"), "{garment_refused}");
+    let settings = Settings { path_steps: 25, ..Settings::default() };
+    let settings_refused = refused(&Request { settings, ..request(&character, &garment) }.setup());
+    assert!(settings_refused.contains("settings") && settings_refused.contains("path_steps: 25"), "{settings_refused}");
+    let material = ("lead", Material { density: 9.0, ..Material::default() });
+    let material_refused = refused(&Request { material, ..request(&character, &garment) }.setup());
+    assert!(material_refused.contains("another material") && material_refused.contains("lead"), "{material_refused}");
+}
+
+fn request<'a>(character: &'a Character, garment: &'a Garment) -> Request<'a> {
+    Request {
+        character,
+        garment,
+        names: ["a.glb", "b.glb"],
+        material: ("cotton", Material::default()),
+        settings: Settings::default(),
+        shard: Shard::WHOLE,
+        twins: 0,
+    }
+}
+
+#[test]
+fn shards_share_the_poses_evenly() {
+    let shards: Vec<Shard> = (0..3).map(|i| format!("{i}/3").parse().unwrap()).collect();
+    for pose in 0..100 {
+        assert_eq!(shards.iter().filter(|shard| shard.holds(pose)).count(), 1, "pose {pose}");
+    }
+    let sizes = shards.iter().map(|shard| (0..10).filter(|pose| shard.holds(*pose)).count());
+    assert_eq!(sizes.collect::<Vec<_>>(), [4, 3, 3]);
+    for wrong in ["", "1", "3/3", "-1/3", "0/0", "1/x"] {
+        assert!(wrong.parse::<Shard>().is_err(), "{wrong:?} is no shard");
+    }
+}
+
+#[test]
+fn twins_are_spread_over_the_poses() {
+    assert_eq!(noise::spread(100, 4), [12, 37, 62, 87]);
+    assert_eq!(noise::spread(3, 9), [0, 1, 2]);
+    assert!(noise::spread(0, 9).is_empty());
+}
+
+#[test]
+fn a_twin_turns_every_joint_by_half_a_degree() {
+    let (mut character, _) = scene();
+    character.joints[1].parent = Some(0);
+    let pose = character.canonical_pose();
+    let twin = noise::turned(&character, &pose, 3, 14);
+    let local = |pose: &Pose| [pose[0], pose[0].inverse() * pose[1]];
+    for (joint, (a, b)) in local(&pose).iter().zip(local(&twin)).enumerate() {
+        let turn = glam::DQuat::from_mat3(&(a.matrix3.inverse() * b.matrix3)).to_axis_angle().1.to_degrees();
+        assert!((turn - noise::DEGREES).abs() < 1e-6, "joint {joint} turns by {turn} degrees");
+        assert!(a.translation.distance(b.translation) < 1e-12, "joint {joint} moves in its parent");
+    }
+    assert_eq!(twin, noise::turned(&character, &pose, 3, 14));
+    assert_ne!(twin, noise::turned(&character, &pose, 3, 15));
+}

@@ -1,0 +1,86 @@
+//! Contact sheet of a dataset: poses spread over the clips, front and back, all at one scale, framed to the cloth.
+
+use super::canvas::Canvas;
+use super::figure::Figure;
+use super::{View, text};
+use crate::dataset::{Dataset, Sample};
+use crate::rig::{Character, pose, vertices};
+use crate::simulate::{body_frame, to_body_frame};
+use crate::{Error, Result};
+use glam::{DVec2, DVec3};
+use image::{Rgb, RgbImage};
+use std::collections::BTreeMap;
+
+/// Poses on a sheet, and how many of them side by side.
+const POSES: usize = 12;
+const COLUMNS: usize = 4;
+/// Pixels of one view, and between two.
+const VIEW: [usize; 2] = [246, 356];
+const GAP: usize = 4;
+/// Height of a caption with the space around it, pixels.
+const CAPTION: usize = text::HEIGHT + 10;
+/// Share of the view on either side of the cloth: enough of the body to understand the pose.
+const MARGIN: f64 = 0.14;
+
+/// The sheet of `dataset`; `character` is who it was made with.
+pub fn sheet(dataset: &Dataset, character: &Character) -> Result<RgbImage> {
+    let description = &dataset.setup.description;
+    let names = character.joints.iter().map(|joint| &joint.name);
+    if !names.eq(&description.joints) || character.body.positions.len() * 3 != dataset.setup.body.len() {
+        return Err(Error::Dataset(format!("wanted the character {}, found another", description.character)));
+    }
+    let chosen = choose(dataset, character);
+    if chosen.is_empty() {
+        return Err(Error::Dataset("no pose was kept, there is nothing to show".to_owned()));
+    }
+    let triangles = dataset.setup.triangles.as_chunks::<3>().0;
+    let cloths: Vec<Vec<DVec3>> = chosen.iter().map(|sample| vertices(&sample.truth)).collect();
+    let views = [View::THREE[0], View::THREE[2]];
+    let extent = cloths.iter().flat_map(|cloth| views.map(|view| bounds(cloth, &view)));
+    let extent = extent.map(|(low, high)| (high - low).truncate()).fold(DVec2::splat(1e-3), DVec2::max);
+    let size = DVec2::new(VIEW[0] as f64, VIEW[1] as f64);
+    let pixels_per_metre = (size * (1.0 - 2.0 * MARGIN) / extent).min_element();
+    let rows = chosen.len().div_ceil(COLUMNS);
+    let pair = [2 * (VIEW[0] + GAP), VIEW[1] + GAP + CAPTION];
+    let mut sheet = RgbImage::from_pixel((COLUMNS * pair[0]) as u32, (rows * pair[1]) as u32, Rgb([255; 3]));
+    for (at, (sample, cloth)) in chosen.iter().zip(&cloths).enumerate() {
+        let corner = [at % COLUMNS * pair[0] + GAP / 2, at / COLUMNS * pair[1]];
+        let pose = to_body_frame(character, &pose(&sample.joints));
+        let figure = Figure::new(character, &pose, Some((cloth, triangles)));
+        let layers = figure.layers();
+        let ground = layers[0].positions.iter().map(|point| point.y).fold(f64::INFINITY, f64::min);
+        for (side, view) in views.iter().enumerate() {
+            let (low, high) = bounds(cloth, view);
+            let canvas = Canvas::new(VIEW, view.axes(), (low + high) / 2.0, pixels_per_metre);
+            canvas.paint(&layers, ground).resolve(&mut sheet, [corner[0] + side * (VIEW[0] + GAP), corner[1]]);
+        }
+        let caption = format!("{} {}", description.clips[sample.record.clip], sample.record.frame);
+        text::write(&mut sheet, [corner[0], corner[1] + VIEW[1] + 5], pair[0] - GAP, &caption);
+    }
+    Ok(sheet)
+}
+
+/// Least and greatest corner of the cloth in view space.
+fn bounds(cloth: &[DVec3], view: &View) -> (DVec3, DVec3) {
+    let axes = view.axes();
+    let start = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    cloth.iter().map(|point| axes * *point).fold(start, |(low, high), point| (low.min(point), high.max(point)))
+}
+
+/// Up to [`POSES`] kept poses, dealt evenly to the clips; of each stretch of a clip the one in which the cloth is furthest from
+/// where it hangs in the canonical pose, for there it is most likely to be wrong.
+fn choose<'a>(dataset: &'a Dataset, character: &Character) -> Vec<&'a Sample> {
+    let clips: Vec<&[Sample]> = dataset.samples.chunk_by(|a, b| a.record.clip == b.record.clip).collect();
+    let wanted = POSES.min(dataset.samples.len());
+    let mut shares: BTreeMap<usize, usize> = BTreeMap::new();
+    (0..wanted).for_each(|i| *shares.entry(i * clips.len() / wanted).or_default() += 1);
+    let frame = body_frame(character, &character.canonical_pose());
+    let hung: Vec<DVec3> =
+        vertices(&dataset.setup.template).iter().map(|point| frame.transform_point3(*point)).collect();
+    let distance = |sample: &Sample| -> f64 {
+        vertices(&sample.truth).iter().zip(&hung).map(|(a, b)| a.distance_squared(*b)).sum()
+    };
+    let furthest = |part: &'a [Sample]| part.iter().max_by(|a, b| distance(a).total_cmp(&distance(b)));
+    let stretches = shares.iter().flat_map(|(clip, share)| clips[*clip].chunks(clips[*clip].len().div_ceil(*share)));
+    stretches.filter_map(furthest).collect()
+}
