@@ -17,7 +17,6 @@ use super::contact::{Contact, Pin};
 use super::matrix::Matrix;
 use super::neighbourhood::Neighbourhood;
 use super::posed::PosedBody;
-use super::proximity::Pair;
 use super::settings::Settings;
 
 /// Proximal time step at the start of a relaxation and at most, seconds; growth after a full Newton step.
@@ -82,6 +81,8 @@ pub(super) struct Solver<'a> {
     pinched: Vec<bool>,
     /// Planes of the body each vertex has met where it is [n].
     touches: Vec<Vec<Touch>>,
+    /// How many planes each has met since the body came to rest [n].
+    met: Vec<u32>,
     /// Lower bound of the distance to the body [n].
     clearance: Vec<f64>,
 }
@@ -110,6 +111,7 @@ impl<'a> Solver<'a> {
             stiffness: vec![settings.contact_stiffness; n],
             pinched: vec![false; n],
             touches: vec![Vec::new(); n],
+            met: vec![0; n],
             clearance: vec![0.0; n],
         }
     }
@@ -133,7 +135,7 @@ impl<'a> Solver<'a> {
     #[cfg(test)]
     /// Least distance of cloth from cloth among the pairs that are near, metres.
     pub fn nearest_layers(&self) -> f64 {
-        let distance = |pair: &Pair| pair.distance(&self.positions);
+        let distance = |pair: &super::proximity::Pair| pair.distance(&self.positions);
         self.neighbourhood.pairs.iter().map(distance).fold(f64::INFINITY, f64::min)
     }
 

@@ -18,6 +18,8 @@ const MEMORY: f64 = 0.001;
 /// Planes whose normals have a larger cosine are one side of the body.
 const SAME_SIDE: f64 = 0.95;
 
+/// Planes a vertex may meet once the body is at rest before it is let go: among fingers it jumps from one to the next for good.
+const MOST_MET: u32 = 12;
 /// Planes whose normals have a smaller cosine face each other.
 const FACING: f64 = -0.7;
 
@@ -64,7 +66,7 @@ impl Solver<'_> {
             let second = second.filter(|second| !body.is_buried(second.face, room));
             self.remember(i, &hit);
             second.iter().for_each(|second| self.remember(i, second));
-            if self.resting && self.is_between(i) {
+            if self.resting && (self.met[i] > MOST_MET || self.is_between(i)) {
                 self.pinched[i] = true;
                 continue;
             }
@@ -85,7 +87,10 @@ impl Solver<'_> {
         touches.retain(|touch| touch.at.distance(at) < MEMORY);
         match touches.iter_mut().find(|touch| touch.normal.dot(new.normal) > SAME_SIDE) {
             Some(same) => *same = new,
-            None => touches.push(new),
+            None => {
+                touches.push(new);
+                self.met[vertex] += u32::from(self.resting);
+            }
         }
     }
 
