@@ -176,7 +176,7 @@ impl Gait {
         ];
         let [forward, up, heel] = through(&keys, 1.0, phase - self.phase[paw]);
         // In a turn the inner steps are shorter, and the paws follow the bend.
-        let inner = if paw.is_multiple_of(2) { 1.0 } else { -1.0 } * self.turn / 150.0;
+        let inner = if paw.is_multiple_of(2) { 1.0 } else { -1.0 } * self.turn / 220.0;
         [-0.02, up, forward * length * (1.0 - inner), heel]
     }
 }
