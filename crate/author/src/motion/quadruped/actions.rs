@@ -180,7 +180,7 @@ fn scratch() -> Move {
     };
     let paw = |up: f64, forward: f64| {
         let mut stance = lean;
-        stance.paws[0] = [0.16, up, forward, -125.0];
+        stance.paws[0] = [0.16, up, forward, -74.0];
         stance
     };
     let mut keys = vec![(0.0, STAND), (0.9, SIT), (1.4, lean), (1.9, paw(0.40, 0.52))];
