@@ -1,9 +1,9 @@
 //! The fox: 0.68 m from nose to rump, 0.38 m at the withers, standing on y = 0 and facing +Z; a brush of 0.42 m.
 //! Proportions of *Vulpes vulpes*; lengths in metres. Legs are lofts over plumb chords whose centres lean with the bones.
 
-use super::figure::{Figure, JointRow, PART, Part};
+use super::figure::{Figure, JointRow, Part};
 use super::loft::Role;
-use super::paw::{ball, eye, paw, toe};
+use super::paw::{eye, paint, paw, toe};
 
 const UP: [f64; 3] = [0.0, 1.0, 0.0];
 const DOWN: [f64; 3] = [0.0, -1.0, 0.0];
@@ -49,44 +49,32 @@ const PARTS: &[Part] = &[
     TRUNK,
     NECK,
     // Fur of the chest.
-    Part {
-        start: [0.0, 0.355, 0.150],
-        along: [0.0, -1.0, -0.25],
-        front: FORWARD,
-        sections: &[
-            [0.0, 0.0, 0.036, 0.026, 0.030],
-            [0.045, 0.0, 0.042, 0.028, 0.04],
-            [0.10, -0.01, 0.034, 0.02, 0.04],
-        ],
-        caps: [0.04, 0.045],
-        blend: 0.05,
-        edge: 0.014,
-        joints: &[("Neck", 0.0, 0.01), ("Spine2", 0.03, 0.035)],
-        ..PART
-    },
+    Part::loft(
+        [0.0, 0.355, 0.150],
+        &[[0.0, 0.0, 0.036, 0.026, 0.030], [0.045, 0.0, 0.042, 0.028, 0.04], [0.10, -0.01, 0.034, 0.02, 0.04]],
+        [0.04, 0.045],
+    )
+    .along([0.0, -1.0, -0.25], FORWARD)
+    .blend(0.05, 0.014)
+    .on(&[("Neck", 0.0, 0.01), ("Spine2", 0.03, 0.035)]),
     // Thigh.
-    Part {
-        start: [0.036, 0.345, -0.215],
-        along: [0.013, -0.150, 0.058],
-        front: FORWARD,
-        sections: &[
+    Part::loft(
+        [0.036, 0.345, -0.215],
+        &[
             [0.00, 0.0, 0.030, 0.046, 0.044],
             [0.05, 0.0, 0.033, 0.054, 0.048],
             [0.10, 0.0, 0.029, 0.048, 0.040],
             [0.15, -0.004, 0.022, 0.032, 0.028],
         ],
-        caps: [0.04, 0.03],
-        blend: 0.04,
-        edge: 0.014,
-        joints: &[("Hips", -0.03, 0.02), ("LeftBackUpLeg", 0.045, 0.055), ("LeftBackLeg", 0.150, 0.03)],
-        ..PART
-    },
+        [0.04, 0.03],
+    )
+    .along([0.013, -0.150, 0.058], FORWARD)
+    .blend(0.04, 0.014)
+    .on(&[("Hips", -0.03, 0.02), ("LeftBackUpLeg", 0.045, 0.055), ("LeftBackLeg", 0.150, 0.03)]),
     // Hind leg, stifle to paw.
-    Part {
-        start: [0.051, 0.215, -0.160],
-        along: DOWN,
-        front: FORWARD,
-        sections: &[
+    Part::loft(
+        [0.051, 0.215, -0.160],
+        &[
             [0.000, 0.000, 0.024, 0.033, 0.034],
             [0.040, -0.030, 0.0205, 0.028, 0.030],
             [0.075, -0.062, 0.0150, 0.0215, 0.022],
@@ -94,45 +82,39 @@ const PARTS: &[Part] = &[
             [0.140, -0.078, 0.0115, 0.0135, 0.0130],
             [0.190, -0.064, 0.0125, 0.0140, 0.0130],
         ],
-        caps: [0.03, 0.02],
-        blend: 0.03,
-        edge: 0.0100,
-        joints: &[
-            ("LeftBackUpLeg", -0.03, 0.01),
-            ("LeftBackLeg", 0.005, 0.030),
-            ("LeftBackFoot", 0.106, 0.020),
-            ("LeftBackToes", 0.192, 0.012),
-        ],
-        ..PART
-    },
+        [0.03, 0.02],
+    )
+    .along(DOWN, FORWARD)
+    .blend(0.03, 0.0100)
+    .on(&[
+        ("LeftBackUpLeg", -0.03, 0.01),
+        ("LeftBackLeg", 0.005, 0.030),
+        ("LeftBackFoot", 0.106, 0.020),
+        ("LeftBackToes", 0.192, 0.012),
+    ]),
     // Shoulder blade and upper arm.
-    Part {
-        start: [0.034, 0.352, 0.080],
-        along: [0.013, -0.150, 0.020],
-        front: FORWARD,
-        sections: &[
+    Part::loft(
+        [0.034, 0.352, 0.080],
+        &[
             [0.00, 0.0, 0.022, 0.036, 0.034],
             [0.05, 0.004, 0.028, 0.042, 0.042],
             [0.10, 0.002, 0.027, 0.036, 0.044],
             [0.14, -0.008, 0.022, 0.026, 0.034],
         ],
-        caps: [0.03, 0.03],
-        blend: 0.04,
-        edge: 0.014,
-        joints: &[
-            ("Spine2", -0.03, 0.02),
-            ("LeftFrontShoulder", 0.020, 0.035),
-            ("LeftFrontUpLeg", 0.080, 0.03),
-            ("LeftFrontLeg", 0.146, 0.025),
-        ],
-        ..PART
-    },
+        [0.03, 0.03],
+    )
+    .along([0.013, -0.150, 0.020], FORWARD)
+    .blend(0.04, 0.014)
+    .on(&[
+        ("Spine2", -0.03, 0.02),
+        ("LeftFrontShoulder", 0.020, 0.035),
+        ("LeftFrontUpLeg", 0.080, 0.03),
+        ("LeftFrontLeg", 0.146, 0.025),
+    ]),
     // Foreleg, elbow to paw.
-    Part {
-        start: [0.048, 0.230, 0.082],
-        along: [-0.002, -0.230, 0.0],
-        front: FORWARD,
-        sections: &[
+    Part::loft(
+        [0.048, 0.230, 0.082],
+        &[
             [0.000, 0.000, 0.022, 0.030, 0.030],
             [0.040, -0.001, 0.0175, 0.023, 0.024],
             [0.090, 0.005, 0.0140, 0.0165, 0.017],
@@ -140,17 +122,16 @@ const PARTS: &[Part] = &[
             [0.175, 0.019, 0.0120, 0.0135, 0.0130],
             [0.208, 0.026, 0.0130, 0.0140, 0.0130],
         ],
-        caps: [0.03, 0.02],
-        blend: 0.03,
-        edge: 0.0100,
-        joints: &[
-            ("LeftFrontUpLeg", -0.03, 0.01),
-            ("LeftFrontLeg", 0.012, 0.025),
-            ("LeftFrontFoot", 0.145, 0.020),
-            ("LeftFrontToes", 0.208, 0.012),
-        ],
-        ..PART
-    },
+        [0.03, 0.02],
+    )
+    .along([-0.002, -0.230, 0.0], FORWARD)
+    .blend(0.03, 0.0100)
+    .on(&[
+        ("LeftFrontUpLeg", -0.03, 0.01),
+        ("LeftFrontLeg", 0.012, 0.025),
+        ("LeftFrontFoot", 0.145, 0.020),
+        ("LeftFrontToes", 0.208, 0.012),
+    ]),
     paw(BACK_PAW, PAW_SIZE, BLACK, BACK_TOES),
     toe(BACK_PAW, PAW_SIZE, 0, BLACK, BACK_TOES),
     toe(BACK_PAW, PAW_SIZE, 1, BLACK, BACK_TOES),
@@ -162,11 +143,9 @@ const PARTS: &[Part] = &[
     toe(FRONT_PAW, PAW_SIZE, 2, BLACK, FRONT_TOES),
     toe(FRONT_PAW, PAW_SIZE, 3, BLACK, FRONT_TOES),
     // Brush.
-    Part {
-        start: [0.0, 0.350, -0.262],
-        along: BRUSH,
-        front: [0.0, 0.766, -0.643],
-        sections: &[
+    Part::loft(
+        [0.0, 0.350, -0.262],
+        &[
             [0.00, 0.0, 0.026, 0.026, 0.026],
             [0.06, 0.0, 0.029, 0.030, 0.030],
             [0.14, 0.0, 0.041, 0.042, 0.042],
@@ -174,40 +153,36 @@ const PARTS: &[Part] = &[
             [0.33, 0.0, 0.041, 0.040, 0.042],
             [0.40, 0.0, 0.022, 0.021, 0.022],
         ],
-        caps: [0.03, 0.045],
-        blend: 0.045,
-        edge: 0.015,
-        joints: &[
-            ("Hips", -0.04, 0.01),
-            ("Tail", 0.012, 0.025),
-            ("Tail1", 0.097, 0.042),
-            ("Tail2", 0.182, 0.042),
-            ("Tail3", 0.267, 0.042),
-            ("Tail4", 0.352, 0.042),
-        ],
-        ..PART
-    },
+        [0.03, 0.045],
+    )
+    .along(BRUSH, [0.0, 0.766, -0.643])
+    .blend(0.045, 0.015)
+    .on(&[
+        ("Hips", -0.04, 0.01),
+        ("Tail", 0.012, 0.025),
+        ("Tail1", 0.097, 0.042),
+        ("Tail2", 0.182, 0.042),
+        ("Tail3", 0.267, 0.042),
+        ("Tail4", 0.352, 0.042),
+    ]),
     SKULL,
     // Cheek ruff.
-    Part {
-        start: [0.022, 0.470, 0.212],
-        along: [1.0, -0.42, -0.42],
-        front: FORWARD,
-        sections: &[[0.0, 0.0, 0.030, 0.020, 0.020], [0.028, 0.0, 0.017, 0.009, 0.010]],
-        caps: [0.02, 0.020],
-        blend: 0.02,
-        edge: 0.0075,
-        joints: HEAD,
-        ..PART
-    },
+    Part::loft(
+        [0.022, 0.470, 0.212],
+        &[[0.0, 0.0, 0.030, 0.020, 0.020], [0.028, 0.0, 0.017, 0.009, 0.010]],
+        [0.02, 0.020],
+    )
+    .along([1.0, -0.42, -0.42], FORWARD)
+    .blend(0.02, 0.0075)
+    .on(HEAD),
     MUZZLE,
     // Brow.
-    Part { blend: 0.016, edge: 0.0075, ..ball([0.020, 0.503, 0.240], [0.015, 0.008, 0.018], HEAD) },
+    Part::ball([0.020, 0.503, 0.240], [0.015, 0.018, 0.008]).on(HEAD).blend(0.016, 0.0075),
     // Lower jaw.
-    Part { blend: 0.012, edge: 0.0052, ..ball([0.0, 0.4505, 0.278], [0.012, 0.008, 0.034], HEAD) },
+    Part::ball([0.0, 0.4505, 0.278], [0.012, 0.034, 0.008]).on(HEAD).blend(0.012, 0.0052),
     // Eye socket, then the lid over it.
-    Part { role: Role::Carve, blend: 0.006, edge: 0.0048, ..ball([0.0285, 0.4930, 0.2505], [0.0095; 3], HEAD) },
-    Part { blend: 0.004, edge: 0.0042, ..ball([0.0262, 0.5018, 0.2454], [0.0112, 0.0054, 0.0116], HEAD) },
+    Part::ball([0.0285, 0.4930, 0.2505], [0.0095; 3]).on(HEAD).role(Role::Carve).blend(0.006, 0.0048),
+    Part::ball([0.0262, 0.5018, 0.2454], [0.0112, 0.0116, 0.0054]).on(HEAD).blend(0.004, 0.0042),
     EAR,
     // Hollow of the ear.
     Part {
@@ -232,7 +207,7 @@ const PARTS: &[Part] = &[
     paint([0.058, 0.570, 0.176], [0.040, 0.042, 0.022], BLACK, 0.010),
     paint([0.0415, 0.535, 0.2115], [0.014, 0.032, 0.012], [0.50, 0.36, 0.27], 0.006),
     // Nose.
-    Part { shell: 2, edge: 0.0030, colour: Some(BLACK), ..ball([0.0, 0.4680, 0.3380], [0.0074, 0.0060, 0.0064], HEAD) },
+    Part::ball([0.0, 0.4680, 0.3380], [0.0074, 0.0064, 0.0060]).on(HEAD).blend(0.03, 0.0030).shell(2).coloured(BLACK),
     EYE[0],
     EYE[1],
     EYE[2],
@@ -245,11 +220,9 @@ const BACK_PAW: [f64; 3] = [0.050, 0.0, -0.242];
 const FRONT_PAW: [f64; 3] = [0.046, 0.0, 0.090];
 const PAW_SIZE: [f64; 3] = [0.039, 0.028, 0.062];
 
-const TRUNK: Part = Part {
-    start: [0.0, 0.335, -0.255],
-    along: FORWARD,
-    front: UP,
-    sections: &[
+const TRUNK: Part = Part::loft(
+    [0.0, 0.335, -0.255],
+    &[
         [0.00, 0.008, 0.044, 0.036, 0.048],
         [0.06, 0.002, 0.054, 0.046, 0.058],
         [0.14, 0.004, 0.051, 0.046, 0.052],
@@ -258,86 +231,56 @@ const TRUNK: Part = Part {
         [0.36, -0.004, 0.055, 0.055, 0.078],
         [0.41, 0.000, 0.044, 0.046, 0.060],
     ],
-    caps: [0.04, 0.04],
-    exponent: 2.1,
-    blend: 0.04,
-    edge: 0.016,
-    joints: &[
-        ("Hips", 0.0, 0.01),
-        ("Spine", 0.140, 0.045),
-        ("Spine1", 0.225, 0.045),
-        ("Spine2", 0.305, 0.045),
-        ("Neck", 0.395, 0.035),
-    ],
-    ..PART
-};
+    [0.04, 0.04],
+)
+.along(FORWARD, UP)
+.exponent(2.1)
+.blend(0.04, 0.016)
+.on(&[
+    ("Hips", 0.0, 0.01),
+    ("Spine", 0.140, 0.045),
+    ("Spine1", 0.225, 0.045),
+    ("Spine2", 0.305, 0.045),
+    ("Neck", 0.395, 0.035),
+]);
 
-const NECK: Part = Part {
-    start: [0.0, 0.330, 0.100],
-    along: [0.0, 0.140, 0.095],
-    front: FORWARD,
-    sections: &[
+const NECK: Part = Part::loft(
+    [0.0, 0.330, 0.100],
+    &[
         [0.00, 0.0, 0.050, 0.052, 0.052],
         [0.07, 0.0, 0.046, 0.046, 0.044],
         [0.12, 0.0, 0.041, 0.040, 0.038],
         [0.16, 0.0, 0.038, 0.036, 0.034],
     ],
-    caps: [0.04, 0.03],
-    blend: 0.05,
-    edge: 0.014,
-    joints: &[("Spine2", 0.0, 0.01), ("Neck", 0.045, 0.035), ("Neck1", 0.095, 0.032), ("Head", 0.150, 0.025)],
-    ..PART
-};
+    [0.04, 0.03],
+)
+.along([0.0, 0.140, 0.095], FORWARD)
+.blend(0.05, 0.014)
+.on(&[("Spine2", 0.0, 0.01), ("Neck", 0.045, 0.035), ("Neck1", 0.095, 0.032), ("Head", 0.150, 0.025)]);
 
-const SKULL: Part = Part {
-    start: [0.0, 0.480, 0.190],
-    along: [0.0, -0.06, 1.0],
-    front: UP,
-    sections: &[
-        [0.000, 0.0, 0.038, 0.036, 0.034],
-        [0.030, 0.0, 0.043, 0.037, 0.034],
-        [0.060, -0.002, 0.033, 0.029, 0.027],
-    ],
-    caps: [0.034, 0.028],
-    blend: 0.03,
-    edge: 0.0095,
-    joints: &[("Neck1", -0.1, 0.01), ("Head", 0.0, 0.02)],
-    ..PART
-};
+const SKULL: Part = Part::loft(
+    [0.0, 0.480, 0.190],
+    &[[0.000, 0.0, 0.038, 0.036, 0.034], [0.030, 0.0, 0.043, 0.037, 0.034], [0.060, -0.002, 0.033, 0.029, 0.027]],
+    [0.034, 0.028],
+)
+.along([0.0, -0.06, 1.0], UP)
+.blend(0.03, 0.0095)
+.on(&[("Neck1", -0.1, 0.01), ("Head", 0.0, 0.02)]);
 
-const MUZZLE: Part = Part {
-    start: [0.0, 0.472, 0.245],
-    along: [0.0, -0.10, 1.0],
-    front: UP,
-    sections: &[
-        [0.000, 0.0, 0.025, 0.022, 0.022],
-        [0.040, 0.0, 0.0165, 0.0145, 0.015],
-        [0.078, 0.0, 0.0115, 0.0105, 0.011],
-    ],
-    caps: [0.02, 0.018],
-    blend: 0.026,
-    edge: 0.0052,
-    joints: HEAD,
-    ..PART
-};
+const MUZZLE: Part = Part::loft(
+    [0.0, 0.472, 0.245],
+    &[[0.000, 0.0, 0.025, 0.022, 0.022], [0.040, 0.0, 0.0165, 0.0145, 0.015], [0.078, 0.0, 0.0115, 0.0105, 0.011]],
+    [0.02, 0.018],
+)
+.along([0.0, -0.10, 1.0], UP)
+.blend(0.026, 0.0052)
+.on(HEAD);
 
-const EAR: Part = Part {
-    start: [0.032, 0.502, 0.192],
-    along: [0.30, 1.0, -0.02],
-    front: [0.35, 0.0, 1.0],
-    sections: &[
-        [0.000, 0.0, 0.024, 0.012, 0.010],
-        [0.025, 0.0, 0.0205, 0.010, 0.008],
-        [0.048, 0.0, 0.0115, 0.007, 0.006],
-    ],
-    caps: [0.015, 0.026],
-    blend: 0.014,
-    edge: 0.0048,
-    joints: &[("Head", 0.0, 0.01), ("LeftEar", 0.010, 0.012)],
-    ..PART
-};
-
-/// Paint within an ellipsoid of the half-axes `size`, its border `soft` metres wide.
-const fn paint(at: [f64; 3], size: [f64; 3], colour: [f32; 3], soft: f64) -> Part {
-    Part { role: Role::Paint, colour: Some(colour), blend: soft, ..ball(at, size, HEAD) }
-}
+const EAR: Part = Part::loft(
+    [0.032, 0.502, 0.192],
+    &[[0.000, 0.0, 0.024, 0.012, 0.010], [0.025, 0.0, 0.0205, 0.010, 0.008], [0.048, 0.0, 0.0115, 0.007, 0.006]],
+    [0.015, 0.026],
+)
+.along([0.30, 1.0, -0.02], [0.35, 0.0, 1.0])
+.blend(0.014, 0.0048)
+.on(&[("Head", 0.0, 0.01), ("LeftEar", 0.010, 0.012)]);

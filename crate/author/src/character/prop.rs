@@ -23,4 +23,4 @@ pub const BOX: Figure = Figure {
     ..SPHERE
 };
 
-const WHOLE: Part = Part { start: [0.0, 0.5, 0.0], sections: BALL, size: [0.3; 3], edge: 0.03, joints: ROOT, ..PART };
+const WHOLE: Part = Part { start: [0.0, 0.5, 0.0], sections: BALL, size: [0.3; 3], edge: 0.02, joints: ROOT, ..PART };

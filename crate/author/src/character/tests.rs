@@ -8,9 +8,9 @@ use std::sync::LazyLock;
 /// The figures with two arms and two legs.
 pub(crate) const TWO_LEGGED: [&str; 4] = ["mannequin", "andy", "qman", "monster"];
 
-/// With their clips, built once: each takes seconds.
+/// Every figure with its clips, built once: each takes seconds.
 static CAST: LazyLock<Vec<(&str, Character)>> =
-    LazyLock::new(|| TWO_LEGGED.par_iter().map(|name| (*name, character(name).expect("a known name"))).collect());
+    LazyLock::new(|| FIGURES.par_iter().map(|(name, _)| (*name, character(name).expect("a known name"))).collect());
 static MANNEQUIN: LazyLock<&Character> = LazyLock::new(|| cast("mannequin"));
 
 /// The figure of that name with its clips, for tests here and of motion.

@@ -1,19 +1,19 @@
 //! Motion of animals and props must be finite, closed, smooth, rigid per joint, long enough, and on the floor.
 
 use super::*;
-use crate::character::character;
+use crate::character::tests::cast;
 use glam::{DAffine3, DVec3};
-use std::sync::LazyLock;
 
-/// Built once: it takes seconds.
-static CAST: LazyLock<Vec<(&str, Character)>> = LazyLock::new(|| {
-    let known = ["cat", "fox", "dolphin", "sphere"];
-    known.iter().map(|&name| (name, character(name).expect("a known character"))).collect()
-});
+const NAMES: [&str; 4] = ["cat", "fox", "dolphin", "sphere"];
+
+/// Names and characters of those that move as animals and props do.
+fn animals() -> impl Iterator<Item = (&'static str, &'static Character)> {
+    NAMES.into_iter().map(|name| (name, cast(name)))
+}
 
 #[test]
 fn animals_have_clips_enough_and_names_of_their_own() {
-    for (name, character) in CAST.iter().filter(|(name, _)| *name != "sphere") {
+    for (name, character) in animals().filter(|(name, _)| *name != "sphere") {
         let clips = &character.clips;
         let seconds: f64 = clips.iter().map(|clip| (clip.poses.len() - 1) as f64 / clip.rate).sum();
         assert!(clips.len() >= 20 && seconds > 200.0, "{name}: {} clips of {seconds} s", clips.len());
@@ -24,7 +24,7 @@ fn animals_have_clips_enough_and_names_of_their_own() {
 
 #[test]
 fn clips_are_finite_closed_and_slow_enough() {
-    for (name, character) in CAST.iter() {
+    for (name, character) in animals() {
         for clip in &character.clips {
             assert!(clip.poses.iter().flatten().all(DAffine3::is_finite), "{name} {}", clip.name);
             let (first, last) = (&clip.poses[0], &clip.poses[clip.poses.len() - 1]);
@@ -42,7 +42,7 @@ fn clips_are_finite_closed_and_slow_enough() {
 fn speed_is_continuous() {
     // At four times the rate a jump in velocity stays a jump, while a smooth change shrinks to a quarter.
     let mut jumps = Vec::new();
-    for (name, character) in CAST.iter() {
+    for (name, character) in animals() {
         let [coarse, fine] = [60.0, 240.0].map(|rate| clips(character, rate).expect("motion"));
         for (coarse, fine) in coarse.iter().zip(&fine) {
             let [before, after] = [coarse, fine].map(greatest_jump);
@@ -66,7 +66,7 @@ fn greatest_jump(clip: &Clip) -> f64 {
 
 #[test]
 fn bones_keep_their_lengths_and_joints_stay_rigid() {
-    for (name, character) in CAST.iter() {
+    for (name, character) in animals() {
         let bind = character.canonical_pose();
         for clip in &character.clips {
             for pose in clip.poses.iter().step_by(4) {
@@ -87,7 +87,7 @@ fn paws_stay_on_the_floor_and_nothing_goes_below() {
     // Both are measured in leg lengths: a cat's is 0.22 m, a fox's 0.32 m.
     let airborne =
         ["trot", "canter", "gallop", "prance", "pounce", "jump", "trot left", "trot right", "turn on the spot"];
-    for (name, character) in CAST.iter().filter(|(name, _)| ["cat", "fox"].contains(name)) {
+    for (name, character) in animals().filter(|(name, _)| ["cat", "fox"].contains(name)) {
         let hip = character.joint("LeftBackUpLeg").map_or(0.0, |j| character.canonical_pose()[j].translation.y);
         for clip in &character.clips {
             for (frame, pose) in clip.poses.iter().enumerate().step_by(5) {
@@ -104,7 +104,7 @@ fn paws_stay_on_the_floor_and_nothing_goes_below() {
 /// Knees and elbows bend one way only, and the neck and the spine only so far.
 #[test]
 fn joints_stay_within_their_limits() {
-    for (name, character) in CAST.iter() {
+    for (name, character) in animals() {
         let bind = character.canonical_pose();
         for clip in &character.clips {
             for pose in clip.poses.iter().step_by(3) {
@@ -132,7 +132,7 @@ fn joints_stay_within_their_limits() {
 
 #[test]
 fn the_canonical_stance_is_the_canonical_pose() {
-    for (name, character) in CAST.iter().filter(|(name, _)| ["cat", "fox"].contains(name)) {
+    for (name, character) in animals().filter(|(name, _)| ["cat", "fox"].contains(name)) {
         let animal = quadruped::Quadruped::new(character).expect("four legs");
         let pose = animal.pose(&quadruped::Stance::default());
         for (joint, (a, b)) in character.joints.iter().zip(pose.iter().zip(character.canonical_pose())) {
@@ -143,7 +143,7 @@ fn the_canonical_stance_is_the_canonical_pose() {
 
 #[test]
 fn a_mirrored_stance_is_the_mirror_image() {
-    let (_, cat) = &CAST[0];
+    let cat = cast("cat");
     let animal = quadruped::Quadruped::new(cat).expect("four legs");
     let stance = quadruped::Stance {
         heading: 20.0,
@@ -171,7 +171,7 @@ fn a_mirrored_stance_is_the_mirror_image() {
 
 #[test]
 fn a_body_of_no_kind_is_told_what_each_kind_lacks() {
-    let mut odd = CAST[0].1.clone();
+    let mut odd = cast("cat").clone();
     for joint in &mut odd.joints {
         joint.name = joint.name.replace("LeftBackUpLeg", "Tentacle");
     }
@@ -183,7 +183,7 @@ fn a_body_of_no_kind_is_told_what_each_kind_lacks() {
 
 #[test]
 fn a_leg_without_length_is_refused() {
-    let mut odd = CAST[0].1.clone();
+    let mut odd = cast("cat").clone();
     let (hip, knee) = (odd.joint("LeftBackUpLeg").expect("a hip"), odd.joint("LeftBackLeg").expect("a knee"));
     odd.joints[knee].inverse_bind = odd.joints[hip].inverse_bind;
     let message = clips(&odd, RATE).expect_err("no thigh").to_string();

@@ -175,12 +175,12 @@ fn scratch() -> Move {
         neck: [-24.0, 26.0, 14.0],
         head: [-12.0, 30.0, 34.0],
         ears: 24.0,
-        tail: [42.0, 0.0, 16.0, -30.0],
+        tail: [48.0, 0.0, 16.0, -30.0],
         ..SIT
     };
     let paw = |up: f64, forward: f64| {
         let mut stance = lean;
-        stance.paws[0] = [0.16, up, forward, 6.0];
+        stance.paws[0] = [0.16, up, forward, -74.0];
         stance
     };
     let mut keys = vec![(0.0, STAND), (0.9, SIT), (1.4, lean), (1.9, paw(0.40, 0.52))];

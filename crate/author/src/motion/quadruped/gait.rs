@@ -94,8 +94,22 @@ pub const GAITS: &[Gait] = &[
         ..WALK
     },
     GALLOP,
-    Gait { name: "turn left", stride: (0.95, 6), hips: [-0.07, 0.010, 0.018], turn: 30.0, ..WALK },
-    Gait { name: "turn right", stride: (0.95, 6), hips: [-0.07, 0.010, 0.018], turn: -30.0, ..WALK },
+    Gait {
+        name: "turn left",
+        stride: (0.95, 6),
+        step: [0.64, 0.54, 0.12],
+        hips: [-0.07, 0.010, 0.018],
+        turn: 30.0,
+        ..WALK
+    },
+    Gait {
+        name: "turn right",
+        stride: (0.95, 6),
+        step: [0.64, 0.54, 0.12],
+        hips: [-0.07, 0.010, 0.018],
+        turn: -30.0,
+        ..WALK
+    },
     Gait { name: "trot left", stride: (0.52, 10), turn: 22.0, ..TROT },
     Gait { name: "trot right", stride: (0.52, 10), turn: -22.0, ..TROT },
     Gait {
@@ -176,7 +190,7 @@ impl Gait {
         ];
         let [forward, up, heel] = through(&keys, 1.0, phase - self.phase[paw]);
         // In a turn the inner steps are shorter, and the paws follow the bend.
-        let inner = if paw.is_multiple_of(2) { 1.0 } else { -1.0 } * self.turn / 150.0;
+        let inner = if paw.is_multiple_of(2) { 1.0 } else { -1.0 } * self.turn / 220.0;
         [-0.02, up, forward * length * (1.0 - inner), heel]
     }
 }

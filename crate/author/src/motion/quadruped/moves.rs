@@ -34,7 +34,7 @@ pub const SIT: Stance = Stance {
     spine: [16.0, 0.0, 0.0],
     neck: [6.0, 0.0, 0.0],
     head: [0.0; 3],
-    tail: [42.0, 0.0, 16.0, 34.0],
+    tail: [48.0, 0.0, 16.0, 34.0],
     paws: [[0.06, 0.0, 0.60, -74.0], [0.06, 0.0, 0.60, -74.0], [-0.02, 0.0, -0.06, 0.0], [-0.02, 0.0, -0.06, 0.0]],
     ..STAND
 };
@@ -136,7 +136,7 @@ fn sit() -> Move {
     };
     let left = Stance { neck: [4.0, 34.0, 0.0], head: [2.0, 58.0, 8.0], ears: 10.0, ..SIT };
     let right = Stance { neck: [10.0, -30.0, 0.0], head: [12.0, -46.0, -14.0], ..SIT };
-    let wag = |curl: f64| Stance { tail: [42.0, 0.3 * curl, 16.0, curl], ..SIT };
+    let wag = |curl: f64| Stance { tail: [48.0, 0.3 * curl, 16.0, curl], ..SIT };
     even("sit", 0.7, &[STAND, half, SIT, wag(10.0), left, left, wag(60.0), right, right, wag(0.0), SIT, half])
 }
 
