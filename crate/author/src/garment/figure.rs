@@ -3,8 +3,12 @@
 use super::anatomy::{Anatomy, Limb, anatomy, below, joint_positions, membership};
 use super::curve::arc_length;
 use super::kind::Build;
+use super::opening::Plane;
 use crate::rig::Character;
 use glam::DVec3;
+
+/// Room cloth wants on either side of the plane between two legs, in body extents.
+const ROOM: f64 = 0.006;
 
 /// A body's anatomy in tailor's terms.
 pub(super) struct Figure<'a> {
@@ -80,13 +84,25 @@ impl<'a> Figure<'a> {
         self.forward = if toes < 0.0 { -side } else { side };
     }
 
-    /// How far down the trunk reaches between two legs: its lowest skin near the middle, metres.
-    pub fn crotch(&self, legs: [usize; 2], down: DVec3) -> DVec3 {
+    /// Where there is room for cloth between two legs, searched downwards from the trunk's lowest skin, metres. `middle`: the
+    /// plane between them.
+    pub fn crotch(&self, legs: [usize; 2], middle: &Plane, down: DVec3) -> DVec3 {
         let [a, b] = legs.map(|leg| self.share(leg));
-        let (hip, lateral) = (self.spine[0], self.lateral(legs));
-        let trunk = self.character.body.positions.iter().zip(a.iter().zip(&b)).filter(|(_, (a, b))| *a + *b < 0.5);
-        let middle = trunk.map(|(p, _)| *p).filter(|p| (*p - hip).dot(lateral).abs() < 0.03 * self.extent);
-        middle.max_by(|p, q| p.dot(down).total_cmp(&q.dot(down))).unwrap_or(self.limb(legs[0]).path[0])
+        let skin = || self.character.body.positions.iter().zip(a.iter().zip(&b).map(|(a, b)| a + b));
+        let near = |p: &DVec3, room: f64| middle.past(*p).abs() < room * self.extent;
+        let trunk = skin().filter(|(p, share)| *share < 0.5 && near(p, 0.03)).map(|(p, _)| p.dot(down));
+        let hip = self.limb(legs[0]).path[0].dot(down);
+        let mut depth = trunk.fold(hip, f64::max);
+        // Thighs that touch: what lies between them is solid to the simulator, cloth there could not move.
+        let step = 0.01 * self.extent;
+        let blocked = |depth: f64| {
+            skin().any(|(p, share)| share >= 0.5 && near(p, ROOM) && (0.0..2.0 * step).contains(&(p.dot(down) - depth)))
+        };
+        let knee = hip + 0.45 * arc_length(&self.limb(legs[0]).path);
+        while depth < knee && blocked(depth) {
+            depth += step;
+        }
+        middle.point + down * (depth + step - middle.point.dot(down))
     }
 
     /// Share of a limb's joints in the weights of every body vertex [b].

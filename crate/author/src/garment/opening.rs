@@ -99,11 +99,11 @@ impl Figure<'_> {
         let path = &self.limb(limb).path;
         let (root, total) = (self.leaves_trunk(limb), arc_length(path));
         let bone = if self.limb(limb).chain.len() > 1 { path[0].distance(path[1]) } else { 0.0 };
-        // A hunched neck leaves the trunk forwards: a collar square to it would bare the chest, so it leans half way.
-        let lean = if self.neck == Some(limb) { self.trunk() } else { DVec3::ZERO };
+        // A hunched neck leaves the trunk forwards: a collar square to it would bare chest and shoulders, so it leans back.
+        let lean = if self.neck == Some(limb) { if self.legs.is_some() { 3.0 } else { 1.0 } } else { 0.0 };
         let plane = |s: f64| {
             let (point, along) = at(path, s);
-            Plane { point, normal: (along + lean).normalize_or(along) }
+            Plane { point, normal: (along + self.trunk() * lean).normalize_or(along) }
         };
         let sections: Vec<(f64, f64)> = (0..=12)
             .map(|k| root + bone * 0.6 * k as f64 / 12.0)

@@ -119,9 +119,9 @@ impl Draft<'_> {
             pattern.bare.push(Bare { share: self.figure.share(leg), plane: Some(plane) });
         }
         let down = self.figure.hem(legs, self.preset.hem).normal;
-        let point = self.figure.crotch(legs, down) + down * (2.0 * self.loose);
         let [a, b] = legs.map(|leg| self.figure.limb(leg).path[0]);
         let middle = Plane { point: (a + b) / 2.0, normal: self.figure.lateral(legs) };
+        let point = self.figure.crotch(legs, &middle, down);
         pattern.gap = Some([middle, Plane { point, normal: down }]);
         pattern
     }
@@ -143,13 +143,17 @@ impl Draft<'_> {
                 pattern.bare.push(Bare { share: figure.share(arm), plane: Some(plane) });
             }
         }
-        let front = Plane { point: top + forward * (0.045 * figure.extent), normal: forward };
         let side = |sign: f64| {
             let normal = (lateral * sign + trunk * preset.flare).normalize();
             Plane { point: top + lateral * (sign * width), normal }
         };
-        let mut groups = vec![vec![front], vec![side(1.0)], vec![side(-1.0)], vec![hem]];
+        let mut groups = vec![vec![side(1.0)], vec![side(-1.0)], vec![hem]];
         let collar = figure.neck.map(|neck| figure.collar(neck, preset.collar));
+        // The front edges meet the neck a little before its middle: farther forward they would close around it.
+        let neck =
+            figure.neck.zip(collar).map(|(neck, collar)| (collar.point, 0.4 * figure.limb_radius(neck, &collar)));
+        let (point, ahead) = neck.unwrap_or((top, 0.03 * figure.extent));
+        groups.push(vec![Plane { point: point + forward * ahead, normal: forward }]);
         if let (Some(neck), Some(collar)) = (figure.neck, collar) {
             groups.push(vec![collar]);
             pattern.bare.push(Bare { share: figure.share(neck), plane: Some(collar) });

@@ -1,6 +1,7 @@
 //! What makes a mesh fit for cloth: a manifold with few rims, even edges, no thin triangles, clear of the body.
 
 use crate::rig::Mesh;
+use glam::DVec3;
 use std::collections::BTreeMap;
 
 /// Measured quality of a cloth mesh.
@@ -44,7 +45,7 @@ pub fn quality(mesh: &Mesh) -> Quality {
         edges.keys().map(|&(a, b)| mesh.positions[a as usize].distance(mesh.positions[b as usize])).collect();
     let mean = lengths.iter().sum::<f64>() / lengths.len().max(1) as f64;
     lengths.iter_mut().for_each(|length| *length /= mean);
-    let mut angles: Vec<f64> = mesh.triangles.iter().map(|t| least_angle(mesh, *t)).collect();
+    let mut angles: Vec<f64> = mesh.triangles.iter().map(|t| least_angle(&mesh.positions, *t)).collect();
     lengths.sort_by(f64::total_cmp);
     angles.sort_by(f64::total_cmp);
     let at = |values: &[f64], share: f64| {
@@ -111,8 +112,8 @@ fn fans(mesh: &Mesh) -> bool {
 }
 
 /// Smallest angle of a triangle, degrees.
-pub(super) fn least_angle(mesh: &Mesh, triangle: [u32; 3]) -> f64 {
-    let p = triangle.map(|v| mesh.positions[v as usize]);
+pub(super) fn least_angle(positions: &[DVec3], triangle: [u32; 3]) -> f64 {
+    let p = triangle.map(|v| positions[v as usize]);
     let angle = |k: usize| (p[(k + 1) % 3] - p[k]).angle_between(p[(k + 2) % 3] - p[k]).to_degrees();
     angle(0).min(angle(1)).min(angle(2))
 }

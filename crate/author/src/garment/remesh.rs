@@ -4,6 +4,7 @@
 use super::cut::{Piece, compact};
 use super::field::Field;
 use super::opening::Opening;
+use super::quality::least_angle;
 use glam::DVec3;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -19,17 +20,28 @@ pub(super) fn remesh(piece: Piece, field: &Field, openings: &[Opening], target: 
     for round in 0..14 {
         sheet.split(4.0 / 3.0 * edge);
         sheet.collapse(0.8 * edge, 4.0 / 3.0 * edge);
-        sheet.flip();
+        sheet.flip(Better::Valence);
         sheet.relax();
         if round >= 4 {
             edge *= (sheet.count() as f64 / target as f64).sqrt().clamp(0.9, 1.1);
         }
     }
     (0..6).for_each(|_| {
-        sheet.flip();
+        sheet.flip(Better::Valence);
         sheet.relax();
     });
+    // Slivers that creases leave: valence does not see them.
+    (0..3).for_each(|_| sheet.flip(Better::Angle));
     sheet.into_piece()
+}
+
+/// What an edge is flipped for.
+#[derive(Clone, Copy, PartialEq)]
+enum Better {
+    /// Valences nearer to six, four on the rim.
+    Valence,
+    /// A larger smallest angle.
+    Angle,
 }
 
 /// Area of a triangle.
@@ -192,8 +204,8 @@ impl<'a> Sheet<'a> {
         self.positions[to as usize] = point;
     }
 
-    /// Flips inner edges where that brings valences nearer to six (four on the rim).
-    fn flip(&mut self) {
+    /// Flips inner edges where that is better and the surface does not fold.
+    fn flip(&mut self, better: Better) {
         for (a, b) in self.edges() {
             let beside = self.beside(a, b);
             let &[left, right] = &beside[..] else { continue };
@@ -220,7 +232,13 @@ impl<'a> Sheet<'a> {
             };
             let old = normal(self.triangles[left as usize]) + normal(self.triangles[right as usize]);
             let sound = new.iter().all(|t| normal(*t).dot(old) > 0.5 * normal(*t).length() * old.length());
-            if after < before && sound {
+            let angle = |t: [u32; 3]| least_angle(&self.positions, t);
+            let old = [left, right].map(|t| angle(self.triangles[t as usize]));
+            let wins = match better {
+                Better::Valence => after < before,
+                Better::Angle => new.iter().all(|t| angle(*t) > old[0].min(old[1]) + 1.0),
+            };
+            if wins && sound {
                 self.triangles[left as usize] = new[0];
                 self.triangles[right as usize] = new[1];
                 self.around[b as usize].retain(|&t| t != left);

@@ -28,7 +28,7 @@ fn scene() -> (Character, Garment) {
     };
     let poses = vec![character.canonical_pose(); 2];
     character.clips.push(Clip { name: "still".to_owned(), rate: 7.3, poses });
-    (character, Garment { mesh: mesh(0.01), surface: Surface::default() })
+    (character, Garment { mesh: mesh(0.01), ..Garment::default() })
 }
 
 #[test]

@@ -9,7 +9,7 @@ use glam::DVec3;
 /// A person and a sound skirt.
 fn scene() -> (Character, Garment) {
     let person = person();
-    let cut = Cut { kind: Some(Kind::Skirt), vertices: Some(1000), ..Cut::default() };
+    let cut = Cut { kind: Some(Kind::Skirt), vertices: Some(600), ..Cut::default() };
     let skirt = shell(&person, &cut).unwrap();
     (person, skirt)
 }

@@ -61,7 +61,7 @@ pub(super) fn check(mesh: &Mesh, source: &Source, findings: &mut Findings) {
 
 /// Triangles so thin that their shape is rounding error, or nearly.
 fn slivers(mesh: &Mesh, face: &impl Fn([u32; 3]) -> String, findings: &mut Findings) {
-    let least = |t: &[u32; 3]| super::super::quality::least_angle(mesh, *t);
+    let least = |t: &[u32; 3]| super::super::quality::least_angle(&mesh.positions, *t);
     let between =
         |low: f64, high: f64| list(mesh.triangles.iter().filter(|t| (low..high).contains(&least(t))).map(|t| face(*t)));
     let (refused, remarked) = (between(0.0, SLIVER[0]), between(SLIVER[0], SLIVER[1]));
