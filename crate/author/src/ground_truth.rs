@@ -97,12 +97,15 @@ impl<'a> Run<'a> {
 
 /// The poses and twins of the request's shard.
 fn tasks<'a>(request: &Request<'a>, poses: usize, folder: &Path) -> Vec<Task<'a>> {
-    let twins = noise::spread(poses, request.twins);
     let clips = request.character.clips.iter().enumerate();
     let frames = clips
         .flat_map(|(clip, sampled)| sampled.poses.iter().enumerate().map(move |(frame, pose)| (clip, frame, pose)));
+    let frames: Vec<_> = frames.collect();
+    let chosen = noise::spread(poses, request.poses.unwrap_or(poses));
+    let twins = noise::spread(chosen.len(), request.twins);
     let mut tasks = Vec::new();
-    for (index, (clip, frame, pose)) in frames.enumerate().filter(|(index, _)| request.shard.holds(*index)) {
+    for (index, at) in chosen.into_iter().enumerate().filter(|(index, _)| request.shard.holds(*index)) {
+        let (clip, frame, pose) = frames[at];
         tasks.push(Task { clip, frame, twin: false, pose, path: pose_path(folder, clip, frame) });
         if twins.binary_search(&index).is_ok() {
             tasks.push(Task { clip, frame, twin: true, pose, path: twin_path(folder, clip, frame) });

@@ -43,6 +43,9 @@ pub struct Options {
     /// Poses per second sampled from every clip
     #[arg(long, default_value_t = 10.0)]
     pub rate: f64,
+    /// Simulate only this many of the frames, evenly spread over the clips. Default: all
+    #[arg(long, value_name = "N")]
+    pub poses: Option<usize>,
     /// Clip to use, by name; may be given several times. Default: all
     #[arg(long = "clip")]
     pub clips: Vec<String>,
@@ -68,6 +71,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         material: (&options.material, material),
         settings: Settings { attached: garment.pins.clone(), ..Settings::default() },
         shard: *shard,
+        poses: options.poses,
         twins: options.noise_floor,
     };
     let work = Run::new(request, output)?;

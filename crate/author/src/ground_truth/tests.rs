@@ -60,6 +60,7 @@ fn request<'a>(character: &'a Character, garment: &'a Garment) -> Request<'a> {
         material: ("cotton", Material::default()),
         settings: Settings::default(),
         shard: Shard::WHOLE,
+        poses: None,
         twins: 0,
     }
 }
