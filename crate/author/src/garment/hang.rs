@@ -2,11 +2,26 @@
 //! Beyond the field's narrow band a layer's distances are solved again, or flares would grow by the band's width at once.
 
 use super::field::Field;
-use super::pattern::Hang;
-use glam::DVec2;
+use super::opening::Plane;
+use glam::{DVec2, DVec3};
 
 /// Distance where a layer holds nothing, metres.
 const FAR: f32 = 1e3;
+
+/// Past its start, along the fall, the shell never narrows.
+#[derive(Clone, Debug)]
+pub(super) struct Hang {
+    /// Where cloth starts to fall, metres.
+    pub start: DVec3,
+    /// Unit direction.
+    pub fall: DVec3,
+    /// How far, metres.
+    pub length: f64,
+    /// Metres it widens on every side per metre.
+    pub flare: f64,
+    /// Only on the near side of this plane.
+    pub within: Option<Plane>,
+}
 
 impl Hang {
     /// From the far end back to the start.

@@ -24,9 +24,10 @@ use cut::Piece;
 use field::Field;
 use figure::Figure;
 use glam::DVec3;
+use hang::Hang;
 use kind::Preset;
 use opening::{Bare, Opening};
-use pattern::{Hang, Pattern, pattern};
+use pattern::{Pattern, pattern};
 use solid::Solid;
 
 #[cfg(test)]

@@ -3,24 +3,10 @@
 
 use super::curve::{arc_length, at};
 use super::figure::Figure;
+use super::hang::Hang;
 use super::kind::{Build, Kind, Preset};
 use super::opening::{Bare, Opening, Plane};
 use glam::DVec3;
-
-/// Past its start, along the fall, the shell never narrows.
-#[derive(Clone, Debug)]
-pub(super) struct Hang {
-    /// Where cloth starts to fall, metres.
-    pub start: DVec3,
-    /// Unit direction.
-    pub fall: DVec3,
-    /// How far, metres.
-    pub length: f64,
-    /// Metres it widens on every side per metre.
-    pub flare: f64,
-    /// Only on the near side of this plane.
-    pub within: Option<Plane>,
-}
 
 /// A tube around a limb, wider than the limb.
 #[derive(Clone, Debug)]
@@ -103,7 +89,7 @@ impl Draft<'_> {
 
     /// From a waistband down, one tube around both legs.
     fn skirt(&self, legs: [usize; 2]) -> Pattern {
-        let mut pattern = self.from_waist(legs);
+        let mut pattern = self.below_waist(legs);
         let hem = self.figure.hem(legs, self.preset.hem);
         self.stop_at_hem(legs, hem, &mut pattern);
         pattern.hangs.push(self.hang(self.on_spine(self.preset.waist), hem));
@@ -112,7 +98,7 @@ impl Draft<'_> {
 
     /// From a waistband down, a tube per leg.
     fn trousers(&self, legs: [usize; 2]) -> Pattern {
-        let mut pattern = self.from_waist(legs);
+        let mut pattern = self.below_waist(legs);
         for leg in legs {
             let plane = self.figure.across(leg, self.preset.hem);
             pattern.openings.push(Opening::new(plane, self.past));
@@ -234,7 +220,7 @@ impl Draft<'_> {
     }
 
     /// Everything above the waist bare, an opening with a waistband there.
-    fn from_waist(&self, legs: [usize; 2]) -> Pattern {
+    fn below_waist(&self, legs: [usize; 2]) -> Pattern {
         let figure = self.figure;
         let (point, normal) = at(&figure.spine, self.preset.waist * arc_length(&figure.spine));
         let plane = Plane { point, normal };

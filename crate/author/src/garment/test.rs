@@ -1,8 +1,7 @@
 //! Garments on bodies made in code: overlapping capsules, one shell per bone, as awkward as a real file's.
 
 use super::*;
-use crate::rig::Surface;
-use crate::rig::{Joint, Mesh};
+use crate::rig::{Joint, Mesh, Surface};
 use glam::{DAffine3, DVec2};
 
 /// Adds a capsule from `a` to `b` weighted to one joint.
