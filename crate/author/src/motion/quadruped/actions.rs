@@ -1,12 +1,12 @@
-//! Quick moves: shake, pounce, jump, rear up, scratch, wag, roll the shoulders, swat, turn on the spot, lean.
+//! Quick moves: shake, pounce, jump, rear up, wag, roll the shoulders, swat, turn on the spot, lean.
 //! Lengths in leg lengths, angles in degrees; see [`Stance`] for the channels.
 
-use super::moves::{Move, SIT, STAND, even};
+use super::moves::{Move, STAND, even};
 use super::stance::Stance;
 
-/// The moves of this file.
+/// The moves of this file. Scratching behind the ear was tried and left out: the hock passes the hip and folds past 150°.
 pub fn actions() -> Vec<Move> {
-    vec![shake(), pounce(), jump(), rear(), scratch(), wag(), shoulders(), swat(), turn(), sway(), creep()]
+    vec![shake(), pounce(), jump(), rear(), wag(), shoulders(), swat(), turn(), sway(), creep()]
 }
 
 const PLANTED: [f64; 4] = [0.0; 4];
@@ -164,32 +164,6 @@ fn rear() -> Move {
     bat.paws[2] = [0.02, 0.96, 0.22, 40.0];
     bat.paws[3] = [-0.02, 0.70, 0.02, 74.0];
     even("rear up", 0.6, &[STAND, begin, up, bat, bat.mirrored(), bat, bat.mirrored(), up, begin])
-}
-
-/// Sits aslant and scratches behind the ear with a hind paw.
-fn scratch() -> Move {
-    let lean = Stance {
-        hips: [-0.05, -0.64, 0.20],
-        trunk: [40.0, 4.0, 7.0],
-        spine: [22.0, 20.0, -6.0],
-        neck: [-24.0, 26.0, 14.0],
-        head: [-12.0, 30.0, 34.0],
-        ears: 24.0,
-        tail: [48.0, 0.0, 16.0, -30.0],
-        ..SIT
-    };
-    let paw = |up: f64, forward: f64| {
-        let mut stance = lean;
-        stance.paws[0] = [0.16, up, forward, -74.0];
-        stance
-    };
-    let mut keys = vec![(0.0, STAND), (0.9, SIT), (1.4, lean), (1.9, paw(0.40, 0.52))];
-    keys.extend((0..8).map(|i| {
-        let far = f64::from(i % 2);
-        (2.3 + 0.14 * f64::from(i), paw(0.62 - 0.10 * far, 0.62 - 0.12 * far))
-    }));
-    keys.extend([(3.8, lean), (4.4, SIT), (4.9, SIT)]);
-    Move { name: "scratch", period: 5.8, keys }
 }
 
 /// Wags with the whole hindquarters.

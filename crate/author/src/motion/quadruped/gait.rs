@@ -96,7 +96,7 @@ pub const GAITS: &[Gait] = &[
     GALLOP,
     Gait {
         name: "turn left",
-        stride: (0.95, 6),
+        stride: (1.25, 5),
         step: [0.64, 0.54, 0.12],
         hips: [-0.07, 0.010, 0.018],
         turn: 30.0,
@@ -104,7 +104,7 @@ pub const GAITS: &[Gait] = &[
     },
     Gait {
         name: "turn right",
-        stride: (0.95, 6),
+        stride: (1.25, 5),
         step: [0.64, 0.54, 0.12],
         hips: [-0.07, 0.010, 0.018],
         turn: -30.0,

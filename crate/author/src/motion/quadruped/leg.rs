@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 
 /// Share of the stretched leg at which folding is eased, the least share, the share at which stretching is eased, and the
 /// share never passed: a leg that snaps straight moves its knee too fast.
-const REACH: [f64; 4] = [0.42, 0.25, 0.935, 0.9995];
+const REACH: [f64; 4] = [0.42, 0.25, 0.935, 0.995];
 
 /// A leg's joints and its canonical geometry.
 pub struct Leg {

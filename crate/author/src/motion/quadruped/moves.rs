@@ -28,7 +28,7 @@ pub const STAND: Stance = Stance {
 };
 
 /// On its haunches, forelegs straight.
-pub const SIT: Stance = Stance {
+const SIT: Stance = Stance {
     hips: [0.0, -0.66, 0.20],
     trunk: [43.0, 0.0, 0.0],
     spine: [16.0, 0.0, 0.0],
