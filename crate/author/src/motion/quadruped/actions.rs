@@ -282,11 +282,11 @@ fn creep() -> Move {
         ..STAND
     };
     let mut held = Stance { hips: [-0.05, -0.30, 0.02], tail: [20.0, 8.0, 14.0, 22.0], ..low };
-    held.paws[2] = [0.0, 0.16, 0.22, 66.0];
+    held.paws[2] = [0.0, 0.16, 0.26, 30.0];
     let flat = Stance {
         hips: [0.0, -0.46, 0.04],
         neck: [-34.0, 0.0, 0.0],
-        paws: super::moves::LIE.paws.map(|[out, up, forward, heel]| [out, up, 0.5 * forward, 0.7 * heel]),
+        paws: super::moves::LIE.paws.map(|[out, up, forward, heel]| [out, up, 0.8 * forward, 0.6 * heel]),
         ..low
     };
     even("crouch", 0.7, &[STAND, low, held, held, low, held.mirrored(), low, flat, flat, low])

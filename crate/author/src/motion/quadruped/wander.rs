@@ -47,7 +47,7 @@ pub fn keys(seed: usize) -> Vec<(f64, Stance)> {
         stance.head = std::array::from_fn(|axis| 0.5 * stance.head[axis] + 0.6 * stance.neck[axis]);
         if i % 3 == 1 {
             let paw = (seed + i / 3) % 4;
-            stance.paws[paw] = [0.04, 0.10 + 0.35 * halton(index, 2), 0.05 + 0.3 * halton(index, 3), 50.0];
+            stance.paws[paw] = [0.04, 0.10 + 0.35 * halton(index, 2), 0.05 + 0.3 * halton(index, 3), 24.0];
         }
         (PERIOD * i as f64 / KEYS as f64, stance)
     };
