@@ -75,9 +75,9 @@ pub struct Dataset {
 /// Which poses of a dataset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Split {
-    /// The first 90 % of every clip.
+    /// What is learned from.
     Train,
-    /// The last 10 % of every clip in time, unseen during training.
+    /// The last tenth of the clips, unseen during training; with fewer than ten clips, the last tenth of each in time.
     Test,
 }
 
@@ -265,7 +265,7 @@ impl Dataset {
         Ok(Self { rejected, setup, samples })
     }
 
-    /// The samples of one split: every clip is cut at 90 % of its time.
+    /// The samples of one split.
     pub fn split(&self, split: Split) -> Vec<&Sample> {
         let clips = self.setup.description.clips.len();
         let mut lengths = vec![0; clips];
@@ -273,7 +273,11 @@ impl Dataset {
             let length = &mut lengths[sample.record.clip];
             *length = (*length).max(sample.record.frame + 1);
         });
-        let train = |sample: &&Sample| sample.record.frame * 10 < lengths[sample.record.clip] * 9;
+        // A few clips cannot be parted: the test would see motion of one kind only.
+        let train = |sample: &&Sample| match clips {
+            0..10 => sample.record.frame * 10 < lengths[sample.record.clip] * 9,
+            _ => sample.record.clip < clips - clips.div_ceil(10),
+        };
         self.samples.iter().filter(|sample| train(sample) == (split == Split::Train)).collect()
     }
 }

@@ -18,7 +18,7 @@ use commands::{bake, bench, character, evaluate, garment, inspect, motion, predi
 ///   ctsn garment character.glb -o garment.glb         a garment, if you have none
 ///   ctsn simulate character.glb garment.glb -o data   quasi-static truth for every frame of the clips
 ///   ctsn sheet data character.glb -o sheet.png        twelve of the poses, to judge by eye
-///   ctsn train data -o model.safetensors              the network, from the first 90 % of every clip
+///   ctsn train data -o model.safetensors              the network, from all clips but the last tenth
 ///   ctsn evaluate model.safetensors data              errors on the rest
 ///   ctsn render model.safetensors character.glb --clip NAME --frame N -o picture.png
 #[derive(Parser)]

@@ -6,7 +6,7 @@ use ctsn_author::dataset::{self, Dataset, Split};
 use ctsn_author::evaluate;
 use std::path::PathBuf;
 
-/// Compare a model with the simulation on the last 10 % of every clip
+/// Compare a model with the simulation on the last tenth of the clips (with fewer than ten: of each clip)
 ///
 /// Prints E_dist, E_norm and penetration of the whole network, of the skeleton stream alone and of plain skinning on the same frames.
 #[derive(clap::Args)]

@@ -8,7 +8,7 @@ use ctsn_core::model::Storage;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Train the network on the first 90 % of every clip of a dataset
+/// Train the network on a dataset: all clips but the last tenth (with fewer than ten: the first 90 % of each)
 ///
 /// A checkpoint is written beside the model every few epochs; training interrupted goes on from it, to the same result.
 #[derive(clap::Args)]

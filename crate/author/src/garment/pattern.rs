@@ -54,7 +54,8 @@ pub(super) fn pattern(figure: &Figure, kind: Kind, preset: &Preset, loose: f64, 
         (Kind::Cape, Some(legs), _) => draft.cape(legs),
         (Kind::Cape, None, _) => draft.saddle(),
         (Kind::Vest, _, _) => draft.vest(),
-        (_, legs, _) => draft.suit(legs),
+        // The wide collar of a robe would slide off a hunched figure's shoulders.
+        (_, legs, _) => draft.suit(legs, kind == Kind::Robe),
     }
 }
 
@@ -67,14 +68,18 @@ struct Draft<'a> {
 }
 
 impl Draft<'_> {
-    /// Trunk with an opening on every limb, legs that continue the trunk sharing one: shirt, dress, robe, coat.
-    fn suit(&self, legs: Option<[usize; 2]>) -> Pattern {
+    /// Trunk with an opening on every limb, legs that continue the trunk sharing one: shirt, dress, robe, coat. `fastened`: whether
+    /// the collar is pinned.
+    fn suit(&self, legs: Option<[usize; 2]>, fastened: bool) -> Pattern {
         let mut pattern = Pattern::default();
         for limb in 0..self.figure.anatomy.limbs.len() {
             if legs.is_some_and(|legs| legs.contains(&limb)) {
                 continue;
             }
-            self.stop_on(limb, &mut pattern);
+            let plane = self.stop_on(limb, &mut pattern);
+            if fastened && self.figure.neck == Some(limb) {
+                pattern.openings.iter_mut().rev().take(1).for_each(|collar| collar.pinned = Some(plane));
+            }
             if self.preset.sleeve_flare > 0.0 && self.figure.arms.is_some_and(|arms| arms.contains(&limb)) {
                 pattern.sleeves.push(self.sleeve(limb));
             }
@@ -240,7 +245,7 @@ impl Draft<'_> {
     }
 
     /// An opening on one limb that is no leg of a hem.
-    fn stop_on(&self, limb: usize, pattern: &mut Pattern) {
+    fn stop_on(&self, limb: usize, pattern: &mut Pattern) -> Plane {
         let paired = self.figure.limb(limb).mirror.is_some();
         let plane = match paired {
             true => self.figure.across(limb, self.preset.sleeve),
@@ -248,6 +253,7 @@ impl Draft<'_> {
         };
         pattern.openings.push(Opening::new(plane, self.past));
         pattern.bare.push(Bare { share: self.figure.share(limb), plane: Some(plane) });
+        plane
     }
 
     /// One opening around two legs.

@@ -169,7 +169,7 @@ fn every_kind_has_its_own_openings_and_reach() {
         let (low, high) = bounds_of(&garment);
         assert_wearable(&person, &garment, loops, 1.78 / 200.0);
         assert!((bottom[0]..bottom[1]).contains(&low.y) && (top[0]..top[1]).contains(&high.y), "{what:?} {low} {high}");
-        let pinned = [Kind::Skirt, Kind::Trousers, Kind::Cape].contains(&what);
+        let pinned = [Kind::Skirt, Kind::Robe, Kind::Trousers, Kind::Cape].contains(&what);
         assert_eq!(pinned, !garment.pins.is_empty(), "{what:?}");
     }
 }

@@ -41,7 +41,7 @@ impl Default for Settings {
         Self {
             thickness: 0.004,
             contact_stiffness: 1e6,
-            reach: 0.05,
+            reach: 0.3,
             shape: 0.5,
             path_steps: 24,
             path_iterations: 2,

@@ -39,13 +39,14 @@ pub fn clips(character: &Character, rate: f64) -> Result<Vec<Clip>> {
     for (name, gait, strides) in gaits {
         clips.push(play(name, strides * gait.stride, &|time| gait.at(time)));
     }
-    for each in &moves {
-        clips.push(play(each.name, each.period, &|time| through(&each.keys, each.period, time)));
-    }
+    // Before the moves: the last clips of a character are what a trained model is tested on.
     for which in 0..wander::COUNT {
         let keys = wander::keys(which);
         let name = format!("wander {}", which + 1);
         clips.push(play(&name, wander::PERIOD, &|time| through(&keys, wander::PERIOD, time)));
+    }
+    for each in &moves {
+        clips.push(play(each.name, each.period, &|time| through(&each.keys, each.period, time)));
     }
     Ok(clips)
 }

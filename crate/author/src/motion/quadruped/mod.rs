@@ -28,14 +28,15 @@ pub fn clips(character: &Character, rate: f64) -> Result<Vec<Clip>> {
         let period = gait.stride.0 * gait.stride.1 as f64;
         clips.push(sample(gait.name, period, rate, |time| animal.pose(&gait.at(time))));
     }
-    for each in &moves::moves() {
-        let stance = |time| through(&each.keys, each.period, time);
-        clips.push(sample(each.name, each.period, rate, |time| animal.pose(&stance(time))));
-    }
+    // Before the moves: the last clips of a character are what a trained model is tested on.
     for seed in 0..WANDERINGS {
         let keys = wander::keys(seed);
         let stance = |time| through(&keys, wander::PERIOD, time);
         clips.push(sample(&format!("wander {}", seed + 1), wander::PERIOD, rate, |time| animal.pose(&stance(time))));
+    }
+    for each in &moves::moves() {
+        let stance = |time| through(&each.keys, each.period, time);
+        clips.push(sample(each.name, each.period, rate, |time| animal.pose(&stance(time))));
     }
     Ok(clips)
 }

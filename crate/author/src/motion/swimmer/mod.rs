@@ -46,10 +46,11 @@ pub fn clips(character: &Character, rate: f64) -> Result<Vec<Clip>> {
         let phase = TAU * beats as f64 / period;
         sample(name, period, rate, |time| swimmer.pose(&through(keys, period, time), phase * time))
     };
-    let mut clips: Vec<Clip> =
-        moves::moves().iter().map(|each| play(each.name, each.period, each.beats, &each.keys)).collect();
     let (period, beats, _) = WANDER;
-    clips.extend((0..WANDERINGS).map(|seed| play(&format!("wander {}", seed + 1), period, beats, &wander(seed))));
+    let wanderings = (0..WANDERINGS).map(|seed| play(&format!("wander {}", seed + 1), period, beats, &wander(seed)));
+    // Before the moves: the last clips of a character are what a trained model is tested on.
+    let mut clips: Vec<Clip> = wanderings.collect();
+    clips.extend(moves::moves().iter().map(|each| play(each.name, each.period, each.beats, &each.keys)));
     Ok(clips)
 }
 
