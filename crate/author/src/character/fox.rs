@@ -18,6 +18,7 @@ const BLACK: [f32; 3] = [0.020, 0.015, 0.013];
 /// The table of the fox.
 pub const FOX: Figure = Figure { joints: JOINTS, parts: PARTS, cell: 0.0035, colour: RED };
 
+#[expect(clippy::approx_constant, reason = "0.318 is the height of a hip, not 1/π")]
 const JOINTS: &[JointRow] = &[
     ("Hips", "", [0.0, 0.345, -0.190]),
     ("Spine", "Hips", [0.0, 0.352, -0.115]),

@@ -84,7 +84,6 @@ impl Solver<'_> {
         let at = self.positions[vertex];
         let new = Touch { normal: hit.normal, plane: hit.normal.dot(at) - hit.distance, at };
         let touches = &mut self.touches[vertex];
-        touches.retain(|touch| touch.at.distance(at) < MEMORY);
         match touches.iter_mut().find(|touch| touch.normal.dot(new.normal) > SAME_SIDE) {
             Some(same) => *same = new,
             None => {
@@ -92,6 +91,7 @@ impl Solver<'_> {
                 self.met[vertex] += u32::from(self.resting);
             }
         }
+        touches.retain(|touch| touch.at.distance(at) < MEMORY);
     }
 
     /// Whether two sides of the body that face each other leave a vertex no room.
