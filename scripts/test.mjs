@@ -30,7 +30,8 @@ function settle(status, passed, failed) {
 }
 
 const suites = {
-  'native: the workspace': () => cargo(['--workspace']),
+  // The physical tests print what they measured beside what is expected.
+  'native: the workspace': () => cargo(['--workspace', '--', '--show-output']),
   'browser: the core as WebAssembly with simd128': () =>
     cargo(['--package', 'ctsn-tests', '--target', 'wasm32-unknown-unknown'], {
       CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUNNER: 'wasm-bindgen-test-runner',
