@@ -39,12 +39,15 @@ const FIGURES: &[(&str, Figure)] = &[
     ("box", prop::BOX),
 ];
 
+/// The names, for help and errors.
+pub fn names() -> String {
+    FIGURES.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ")
+}
+
 /// The character of that name, with the project's clips.
 pub fn character(name: &str) -> Result<Character> {
-    let known: Vec<&str> = FIGURES.iter().map(|(known, _)| *known).collect();
     let found = FIGURES.iter().find(|(known, _)| *known == name);
-    let (_, figure) =
-        found.ok_or_else(|| Error::Character(format!("wanted one of {}, found {name:?}", known.join(", "))))?;
+    let (_, figure) = found.ok_or_else(|| Error::Character(format!("wanted one of {}, found {name:?}", names())))?;
     let mut character = build(figure);
     character.clips = motion::clips(&character, motion::RATE)?;
     Ok(character)

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 /// Write one of the project's own characters, with its motion, as GLB
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// Name of the character; a wrong one lists them
+    #[arg(help = format!("Name of the character: {}", character::names()))]
     name: String,
     /// Where to write it (GLB)
     #[arg(short, long)]
