@@ -112,6 +112,10 @@ fn numbers_out_of_range_are_refused() {
         json["accessors"][accessor]["type"] = json!("SCALAR");
     });
     assert_says(&kind, &["positions", "Vec3", "Scalar"]);
+}
+
+#[test]
+fn references_to_nowhere_are_refused() {
     let missing = refusal(|json, _| json["nodes"][6]["mesh"] = json!(5));
     assert_says(&missing, &["not a valid glTF"]);
     let circle = refusal(|json, _| {
@@ -129,6 +133,10 @@ fn numbers_out_of_range_are_refused() {
     assert_says(&positions, &["mesh 0", "accessor 70"]);
     let image = refusal(|json, _| json["images"] = json!([{ "name": "empty" }]));
     assert_says(&image, &["image 0", "neither"]);
+}
+
+#[test]
+fn impossible_animations_and_binds_are_refused() {
     let backwards = refusal(|json, bin| {
         let accessor = json["animations"][0]["samplers"][0]["input"].as_u64().unwrap() as usize;
         overwrite(json, bin, accessor, &5f32.to_le_bytes());

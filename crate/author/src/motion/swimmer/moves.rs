@@ -39,6 +39,7 @@ pub fn moves() -> Vec<Move> {
     let mut all = swims();
     all.extend(turns());
     all.extend(tricks());
+    all.extend(play());
     all
 }
 
@@ -90,7 +91,7 @@ fn turns() -> Vec<Move> {
     ]
 }
 
-/// Leaps, rolls, play with fins and head.
+/// Leaps and rolls.
 fn tricks() -> Vec<Move> {
     let up =
         Stroke { beat: 1.5, turn: [46.0, 0.0, 0.0], place: [0.0, 0.0, 0.0], fins: [[-4.0, 30.0, 0.0]; 2], ..CRUISE };
@@ -116,18 +117,8 @@ fn tricks() -> Vec<Move> {
         tail: [20.0 * turn.to_radians().cos(), -24.0 * turn.to_radians().sin(), -16.0],
         ..roll(turn)
     };
-    let look = Stroke { beat: 0.3, fore: [8.0, 38.0, 10.0], turn: [2.0, 4.0, 6.0], ..GLIDE };
-    let nod = |up: f64| Stroke { beat: 0.3, fore: [up, 0.0, 0.0], ..GLIDE };
-    let flap = |raised: f64, edge: f64| Stroke { beat: 0.35, fins: [[raised, 4.0, edge]; 2], ..CRUISE };
-    let paddle =
-        Stroke { beat: 0.4, fins: [[26.0, -22.0, 24.0], [-18.0, 34.0, -12.0]], turn: [0.0, 0.0, 8.0], ..CRUISE };
-    let slap =
-        |up: f64| Stroke { beat: 0.1, tail: [up, 0.0, 0.0], fluke: 0.4 * up, fore: [0.3 * up, 0.0, 0.0], ..GLIDE };
     let stand =
         Stroke { beat: 1.3, turn: [66.0, 0.0, 0.0], fore: [-22.0, 0.0, 0.0], tail: [-14.0, 0.0, 0.0], ..CRUISE };
-    let curl = Stroke { beat: 0.1, fore: [-42.0, 0.0, 0.0], tail: [-62.0, 0.0, 0.0], fluke: -12.0, ..GLIDE };
-    let hollow = Stroke { fore: [36.0, 0.0, 0.0], tail: [48.0, 0.0, 0.0], fluke: 10.0, ..curl };
-    let twist = Stroke { beat: 0.4, fore: [0.0, 6.0, 30.0], tail: [0.0, 6.0, -38.0], ..CRUISE };
     vec![
         even(
             "leap",
@@ -142,6 +133,23 @@ fn tricks() -> Vec<Move> {
             &[CRUISE, roll(34.0), roll(80.0), roll(34.0), CRUISE, roll(-34.0), roll(-80.0), roll(-34.0)],
         ),
         even("corkscrew", 9.0, 6, &[-135.0, -95.0, -40.0, 20.0, 80.0, 125.0, 80.0, 20.0, -40.0, -95.0].map(coil)),
+        even("tail stand", 7.0, 10, &[CRUISE, up, stand, Stroke { turn: [66.0, 14.0, 0.0], ..stand }, stand, SLOW]),
+    ]
+}
+
+/// Play with head, fins and tail.
+fn play() -> Vec<Move> {
+    let look = Stroke { beat: 0.3, fore: [8.0, 38.0, 10.0], turn: [2.0, 4.0, 6.0], ..GLIDE };
+    let nod = |up: f64| Stroke { beat: 0.3, fore: [up, 0.0, 0.0], ..GLIDE };
+    let flap = |raised: f64, edge: f64| Stroke { beat: 0.35, fins: [[raised, 4.0, edge]; 2], ..CRUISE };
+    let paddle =
+        Stroke { beat: 0.4, fins: [[26.0, -22.0, 24.0], [-18.0, 34.0, -12.0]], turn: [0.0, 0.0, 8.0], ..CRUISE };
+    let slap =
+        |up: f64| Stroke { beat: 0.1, tail: [up, 0.0, 0.0], fluke: 0.4 * up, fore: [0.3 * up, 0.0, 0.0], ..GLIDE };
+    let curl = Stroke { beat: 0.1, fore: [-42.0, 0.0, 0.0], tail: [-62.0, 0.0, 0.0], fluke: -12.0, ..GLIDE };
+    let hollow = Stroke { fore: [36.0, 0.0, 0.0], tail: [48.0, 0.0, 0.0], fluke: 10.0, ..curl };
+    let twist = Stroke { beat: 0.4, fore: [0.0, 6.0, 30.0], tail: [0.0, 6.0, -38.0], ..CRUISE };
+    vec![
         even("look around", 8.0, 4, &[GLIDE, look, look, GLIDE, look.mirrored(), look.mirrored()]),
         even("nod", 6.0, 3, &[GLIDE, nod(20.0), nod(-22.0), nod(18.0), nod(-18.0), GLIDE]),
         even(
@@ -152,7 +160,6 @@ fn tricks() -> Vec<Move> {
         ),
         even("paddle", 6.0, 5, &[paddle, CRUISE, paddle.mirrored(), CRUISE, paddle, SLOW, paddle.mirrored(), SLOW]),
         even("tail slap", 6.0, 3, &[GLIDE, slap(40.0), slap(-36.0), slap(30.0), slap(-30.0), GLIDE]),
-        even("tail stand", 7.0, 10, &[CRUISE, up, stand, Stroke { turn: [66.0, 14.0, 0.0], ..stand }, stand, SLOW]),
         even("curl", 7.0, 4, &[GLIDE, curl, curl, GLIDE, hollow, hollow]),
         even("twist", 7.0, 5, &[SLOW, twist, SLOW, twist.mirrored()]),
     ]
