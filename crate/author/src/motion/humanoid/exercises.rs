@@ -2,6 +2,7 @@
 
 use super::moves::{FOOT, Move, STAND, wide};
 use super::posture::Posture;
+use crate::motion::curve::Channels;
 
 /// The moves of this file.
 pub fn exercises() -> Vec<Move> {

@@ -1,6 +1,7 @@
 //! Walking and jogging in place: foot paths over one stride, everything else in step with them; simulation.md §5.
 
-use super::posture::{Posture, through};
+use super::posture::Posture;
+use crate::motion::curve::through;
 use std::f64::consts::TAU;
 
 /// How someone walks or runs. Lengths in leg lengths, angles in degrees.

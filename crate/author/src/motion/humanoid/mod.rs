@@ -12,9 +12,10 @@ mod skeleton;
 mod sport;
 mod wander;
 
-pub use posture::{Posture, through};
+pub use posture::Posture;
 pub use skeleton::Humanoid;
 
+use super::curve::through;
 use super::sample;
 use crate::Result;
 use crate::rig::{Character, Clip};

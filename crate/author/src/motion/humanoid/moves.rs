@@ -1,4 +1,4 @@
-//! Moves as key postures: (seconds, posture), closed and C¹ by [`through`](super::posture::through).
+//! Moves as key postures: (seconds, posture), closed and C¹ by [`through`](crate::motion::curve::through).
 //! Arms stay clear of the trunk: cloth caught in an armpit has no unique rest state.
 
 use super::calm::calm;

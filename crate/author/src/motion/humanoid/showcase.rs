@@ -2,8 +2,9 @@
 
 use super::gait::WALK;
 use super::moves::{Move, STAND};
-use super::posture::{Posture, through};
+use super::posture::Posture;
 use crate::character::smoothstep;
+use crate::motion::curve::{Channels, through};
 
 /// Seconds until it repeats.
 pub const PERIOD: f64 = 30.0;

@@ -3,6 +3,7 @@
 //! Plain random draws left gaps; in 33 channels Halton's large primes march in step over the first hundred points.
 
 use super::posture::Posture;
+use crate::motion::curve::Channels;
 
 /// Seconds until a wandering repeats.
 pub const PERIOD: f64 = 9.9;
