@@ -91,7 +91,7 @@ impl Trainer {
         let recorded = upload(&model, &mut tape);
         let parameters: Vec<Id> = recorded.parameters().into_iter().copied().collect();
         let shared = tape.seal(&recorded.parameters());
-        let mut activations = Activations::new(&model, |length| tape.buffer(&vec![0.0; length]));
+        let mut activations = Activations::new(&model, |_, length| tape.buffer(&vec![0.0; length]));
         forward(&mut tape, &recorded, Streams::Both, Space::Body, &mut activations);
         let mut coarse = tape.buffer(&vec![0.0; model.sizes.vertices * 3]);
         tape.skin(&activations.coarse, &recorded.skin, &activations.body_frame, Space::Body, &mut coarse);

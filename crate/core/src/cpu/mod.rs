@@ -1,9 +1,9 @@
 //! The CPU device: one file per operation, kernels generic over the SIMD level, dispatched once per call.
 //! The same source serves AVX2, NEON, wasm simd128 and the scalar level, which is the reference.
 
-pub mod add;
 pub mod attend;
 pub mod blend;
+pub mod body_frame;
 pub mod exp;
 pub mod features;
 pub mod gate;
@@ -14,6 +14,7 @@ pub mod vector;
 
 use crate::device::{Activation, Device, Space};
 use crate::model::{Layer, Linear, Reference, Sizes, Skin};
+use crate::pose::Rig;
 use crate::topology::Graph;
 pub use fearless_simd::Level;
 
@@ -57,16 +58,23 @@ impl Device for Cpu {
         buffer.copy_from_slice(values);
     }
 
+    fn body_frame(&mut self, rig: &Rig, joints: &Vec<f32>, transforms: &mut Vec<f32>, vector: &mut Vec<f32>) {
+        body_frame::body_frame(rig, joints, transforms, vector);
+    }
+
     fn linear(&mut self, x: &Vec<f32>, layer: &Linear<Vec<f32>>, activation: Activation, y: &mut Vec<f32>) {
         linear::linear(self.level, x, &layer.weight, &layer.bias, activation, y);
     }
 
-    fn blend(&mut self, weights: &Vec<f32>, basis: &Vec<f32>, residual: &mut Vec<f32>) {
-        blend::blend(self.level, weights, basis, residual);
-    }
-
-    fn add(&mut self, rest: &Vec<f32>, residual: &Vec<f32>, template: &mut Vec<f32>) {
-        add::add(rest, residual, template);
+    fn blend(
+        &mut self,
+        weights: &Vec<f32>,
+        basis: &Vec<f32>,
+        rest: &Vec<f32>,
+        residual: &mut Vec<f32>,
+        template: &mut Vec<f32>,
+    ) {
+        blend::blend(self.level, weights, basis, rest, residual, template);
     }
 
     fn skin(
@@ -99,15 +107,13 @@ impl Device for Cpu {
         potentials: &Vec<f32>,
         layer: &Layer<Vec<f32>>,
         attended: &mut Vec<f32>,
+        output: &mut Vec<f32>,
     ) {
         attend::attend(self.level, graph, sizes.heads, projected, potentials, &layer.edge, &mut self.scratch, attended);
-    }
-
-    fn gate(&mut self, attended: &Vec<f32>, projected: &Vec<f32>, layer: &Layer<Vec<f32>>, output: &mut Vec<f32>) {
         gate::gate(self.level, attended, projected, &layer.gate, &layer.norm_weight, &layer.norm_bias, output);
     }
 
-    fn normals(&mut self, positions: &Vec<f32>, triangles: &Vec<u32>, normals: &mut Vec<f32>) {
+    fn normals(&mut self, positions: &Vec<f32>, triangles: &[u32], normals: &mut Vec<f32>) {
         normals::normals(positions, triangles, normals);
     }
 }

@@ -127,19 +127,23 @@ pub struct Model<B, I> {
 }
 
 impl<B> Linear<B> {
-    fn map<C>(&self, values: &mut impl FnMut(&B) -> C) -> Linear<C> {
+    fn map<'a, C>(&'a self, values: &mut impl FnMut(&'a B) -> C) -> Linear<C> {
         Linear { weight: values(&self.weight), bias: values(&self.bias), inputs: self.inputs, outputs: self.outputs }
     }
 }
 
 impl<B, I> Skin<B, I> {
-    fn map<C, J>(&self, values: &mut impl FnMut(&B) -> C, indices: &mut impl FnMut(&I) -> J) -> Skin<C, J> {
+    fn map<'a, C, J>(
+        &'a self,
+        values: &mut impl FnMut(&'a B) -> C,
+        indices: &mut impl FnMut(&'a I) -> J,
+    ) -> Skin<C, J> {
         Skin { joints: indices(&self.joints), weights: values(&self.weights), width: self.width }
     }
 }
 
 impl<B> Layer<B> {
-    fn map<C>(&self, values: &mut impl FnMut(&B) -> C) -> Layer<C> {
+    fn map<'a, C>(&'a self, values: &mut impl FnMut(&'a B) -> C) -> Layer<C> {
         Layer {
             project: self.project.map(values),
             edge: values(&self.edge),
@@ -152,7 +156,11 @@ impl<B> Layer<B> {
 
 impl<B, I> Model<B, I> {
     /// The same model on other storage: `values` and `indices` move one array each, in a fixed order.
-    pub fn map<C, J>(&self, mut values: impl FnMut(&B) -> C, mut indices: impl FnMut(&I) -> J) -> Model<C, J> {
+    pub fn map<'a, C, J>(
+        &'a self,
+        mut values: impl FnMut(&'a B) -> C,
+        mut indices: impl FnMut(&'a I) -> J,
+    ) -> Model<C, J> {
         let (values, indices) = (&mut values, &mut indices);
         Model {
             sizes: self.sizes,

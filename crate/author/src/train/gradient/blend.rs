@@ -1,4 +1,4 @@
-//! `Δ[i] = Σ_j w_j B_j[i]`: `dw_j = Σ_i g_i · B_j[i]`, `dB_j[i] = w_j g_i`.
+//! `T[i] = rest[i] + Σ_j w_j B_j[i]`: `dw_j = Σ_i g_i · B_j[i]`, `dB_j[i] = w_j g_i`.
 
 use ctsn_core::cpu::Level;
 use ctsn_core::cpu::vector::axpy;
