@@ -178,7 +178,7 @@ impl<B, I> Model<B, I> {
         }
     }
 
-    /// The trainable arrays, in a fixed order: W_C, Φ, B, graph layers, vertex MLP, M. network.md §6.
+    /// The trainable arrays, in a fixed order: W_C, B, M, Φ, vertex MLP, graph layers. network.md §6.
     pub fn parameters(&self) -> Vec<&B> {
         let mut list = vec![&self.skin.weights, &self.skeleton, &self.mesh];
         for layer in self.embedding.iter().chain(&self.vertex).chain(self.layers.iter().map(|layer| &layer.project)) {
