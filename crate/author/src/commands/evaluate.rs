@@ -3,7 +3,7 @@
 use super::{file_name, model};
 use anyhow::{Context, Result};
 use ctsn_author::dataset::{self, Dataset, Split};
-use ctsn_author::evaluate::{self, Gallery, page};
+use ctsn_author::evaluate::{self, Gallery, page, training};
 use ctsn_core::model::HostModel;
 use std::path::{Path, PathBuf};
 
@@ -32,8 +32,9 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         dataset::write(path, serde_json::to_string_pretty(&report)?.as_bytes())?;
     }
     if let Some(path) = &arguments.html {
+        let curves = training::curves(&arguments.model.with_extension("curve.csv"))?;
         let gallery = Gallery::new(&model, &dataset, &report)?;
-        let page = page::report(&report, &[], &gallery, &facts(&arguments.model, &model)?)?;
+        let page = page::report(&report, &curves, &gallery, &facts(&arguments.model, &model)?)?;
         dataset::write(path, page.as_bytes())?;
     }
     println!("{report}");
@@ -54,6 +55,18 @@ fn facts(path: &Path, model: &HostModel) -> Result<Vec<(&'static str, String)>> 
         ),
         ("network", streams),
     ];
-    facts.extend(model.training.clone().map(|training| ("training", training)));
+    facts.extend(model.training.as_deref().map(|training| ("training", told(training))));
     Ok(facts)
+}
+
+/// The model's JSON about its training, to read.
+fn told(training: &str) -> String {
+    let Ok(serde_json::Value::Object(object)) = serde_json::from_str(training) else { return training.to_owned() };
+    let value = |value: &serde_json::Value| match value {
+        serde_json::Value::String(text) => text.clone(),
+        serde_json::Value::Array(list) => list.len().to_string(),
+        other => other.to_string(),
+    };
+    let parts = object.iter().map(|(name, found)| format!("{} {}", name.replace('_', " "), value(found)));
+    parts.collect::<Vec<_>>().join(", ")
 }

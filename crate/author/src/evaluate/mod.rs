@@ -7,6 +7,7 @@ mod pictures;
 mod table;
 #[cfg(test)]
 mod tests;
+pub mod training;
 
 use crate::dataset::{Dataset, Sample, Split};
 use crate::rig::vertices;

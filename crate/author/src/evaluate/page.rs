@@ -58,9 +58,13 @@ pub fn report(report: &Report, training: &[Chart], gallery: &Gallery, facts: &[(
         }
         (tiles(report))
         h2 { "Ways to predict" }
-        (ways(report))
+        div class="first" { (ways(report)) }
+        @if !curves.is_empty() {
+            h2 { "Training" }
+            div class="charts" { @for chart in &curves { div { (chart) } } }
+        }
+        h2 { "Over the frames" }
         div class="charts" {
-            @for chart in &curves { div { (chart) } }
             div { (frames(report, "E_dist, mm", |frame| 1e3 * frame.distance)?) }
             div { (frames(report, "E_norm, degrees", |frame| frame.normal)?) }
         }
@@ -126,8 +130,9 @@ fn frames(report: &Report, what: &str, part: fn(&super::Frame) -> f64) -> Result
         let mut values: Vec<f64> = report.frames.iter().map(|frame| part(of(frame))).collect();
         values.sort_by(f64::total_cmp);
         let count = values.len() as f64;
-        let points = values.into_iter().enumerate().map(|(i, value)| (value, 100.0 * (i + 1) as f64 / count));
-        Series { name: name.to_owned(), points: points.collect(), line: true }
+        let mut points: Vec<_> = values.first().map(|least| (*least, 0.0)).into_iter().collect();
+        points.extend(values.into_iter().enumerate().map(|(i, value)| (value, 100.0 * (i + 1) as f64 / count)));
+        Series { name: name.to_owned(), points, line: true }
     };
     let series = vec![share("network", |frame| &frame.network), share("plain skinning", |frame| &frame.skinning)];
     Chart { x: what, y: "% of frames at or below", logarithmic: [false; 2], series }.draw()

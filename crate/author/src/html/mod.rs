@@ -49,7 +49,7 @@ pub fn table(heads: &[&str], rows: &[(String, Vec<Cell>)]) -> Markup {
                                     Cell::Text(text) => td { (text) },
                                     Cell::Bar(text, share) => td {
                                         span class="bar" style=(format!("--share:{:.1}%", 100.0 * share.clamp(0.0, 1.0))) {}
-                                        (text)
+                                        span class="number" { (text) }
                                     },
                                 }
                             }
