@@ -19,15 +19,14 @@ pub struct Inputs<'a> {
     pub potentials: &'a [f32],
 }
 
-/// Room for one call.
+/// Room for one vertex.
 #[derive(Default)]
 pub struct Scratch {
     alpha: Vec<f32>,
     dalpha: Vec<f32>,
-    dpotential: Vec<f32>,
 }
 
-/// g [n, F] -> dprojected [n, 4F] (q, k, v columns), dedge [6, F].
+/// g [n, F] -> dprojected [n, 4F] (q, k, v columns, zero before: nothing else reads them), dedge [6, F].
 pub fn attend(
     level: Level,
     inputs: &Inputs,
@@ -37,18 +36,23 @@ pub fn attend(
     dedge: &mut [f32],
 ) {
     dispatch!(level, simd => {
-        scratch.dpotential.clear();
-        scratch.dpotential.resize(g.len(), 0.0);
-        kernel(simd, inputs, g, scratch, dprojected);
-        edges(simd, inputs, &scratch.dpotential, dedge);
+        // As in the forward operation, a length known to the compiler.
+        match dedge.len() / 6 / inputs.heads {
+            8 => kernel::<_, 8>(simd, inputs, g, scratch, dprojected),
+            16 => kernel::<_, 16>(simd, inputs, g, scratch, dprojected),
+            32 => kernel::<_, 32>(simd, inputs, g, scratch, dprojected),
+            _ => kernel::<_, 0>(simd, inputs, g, scratch, dprojected),
+        }
+        edges(simd, inputs, g, dprojected, dedge);
     });
 }
 
+/// D: features per head where they are known, else 0.
 #[inline(always)]
-fn kernel<S: Simd>(simd: S, inputs: &Inputs, g: &[f32], scratch: &mut Scratch, dprojected: &mut [f32]) {
+fn kernel<S: Simd, const D: usize>(simd: S, inputs: &Inputs, g: &[f32], scratch: &mut Scratch, dprojected: &mut [f32]) {
     let features = g.len() / (inputs.graph.offsets.len() - 1);
-    let d = features / inputs.heads;
-    let Scratch { alpha, dalpha, dpotential } = scratch;
+    let d = if D > 0 { D } else { features / inputs.heads };
+    let Scratch { alpha, dalpha } = scratch;
     let projected = inputs.projected;
     for (i, g) in g.chunks_exact(features).enumerate() {
         let neighbours = inputs.graph.of(i);
@@ -56,20 +60,17 @@ fn kernel<S: Simd>(simd: S, inputs: &Inputs, g: &[f32], scratch: &mut Scratch, d
             continue;
         }
         let query = &projected[i * 4 * features..][..features];
-        scores(simd, query, projected, g, neighbours, d, alpha, dalpha);
-        axpy(simd, -1.0, g, &mut dpotential[i * features..][..features]);
         let degree = neighbours.len();
-        for (e, j) in neighbours.iter().map(|j| *j as usize).enumerate() {
+        scores(simd, query, projected, g, neighbours, d, alpha, dalpha);
+        for (e, j) in neighbours.iter().map(|j| *j as usize * 4 * features).enumerate() {
+            let key = &projected[j + features..][..features];
             for (c, at) in (0..features).step_by(d).enumerate() {
-                let (alpha, ds) = (alpha[c * degree + e], dalpha[c * degree + e]);
-                let (g, query) = (&g[at..at + d], &query[at..at + d]);
-                let key = &projected[(j * 4 + 1) * features + at..][..d];
-                axpy(simd, ds, key, &mut dprojected[i * 4 * features + at..][..d]);
-                axpy(simd, ds, query, &mut dprojected[(j * 4 + 1) * features + at..][..d]);
-                axpy(simd, alpha, g, &mut dprojected[(j * 4 + 2) * features + at..][..d]);
-                let dpotential = &mut dpotential[j * features + at..][..d];
-                axpy(simd, ds, query, dpotential);
-                axpy(simd, alpha, g, dpotential);
+                axpy(simd, dalpha[c * degree + e], &key[at..at + d], &mut dprojected[i * 4 * features + at..][..d]);
+            }
+            let (dkey, dvalue) = dprojected[j + features..][..2 * features].split_at_mut(features);
+            for (c, at) in (0..features).step_by(d).enumerate() {
+                axpy(simd, dalpha[c * degree + e], &query[at..at + d], &mut dkey[at..at + d]);
+                axpy(simd, alpha[c * degree + e], &g[at..at + d], &mut dvalue[at..at + d]);
             }
         }
     }
@@ -106,13 +107,18 @@ fn scores<S: Simd>(
     }
 }
 
-/// dedge [6, F] from dU [n, F]: `U = W_e potentials`.
+/// dedge [6, F] from `dU = dk' + dv' - g`: `U = W_e potentials`.
 #[inline(always)]
-fn edges<S: Simd>(simd: S, inputs: &Inputs, dpotential: &[f32], dedge: &mut [f32]) {
+fn edges<S: Simd>(simd: S, inputs: &Inputs, g: &[f32], dprojected: &[f32], dedge: &mut [f32]) {
     let features = dedge.len() / 6;
-    for (potential, du) in inputs.potentials.as_chunks::<6>().0.iter().zip(dpotential.chunks_exact(features)) {
+    let rows = dprojected.chunks_exact(4 * features).zip(g.chunks_exact(features));
+    for (i, (potential, (dprojected, g))) in inputs.potentials.as_chunks::<6>().0.iter().zip(rows).enumerate() {
+        // A vertex without neighbours has ĥ = 0, whatever its U.
+        let own = if inputs.graph.of(i).is_empty() { 0.0 } else { -1.0 };
         for (potential, dedge) in potential.iter().zip(dedge.chunks_exact_mut(features)) {
-            axpy(simd, *potential, du, dedge);
+            axpy(simd, *potential, &dprojected[features..2 * features], dedge);
+            axpy(simd, *potential, &dprojected[2 * features..3 * features], dedge);
+            axpy(simd, own * potential, g, dedge);
         }
     }
 }
