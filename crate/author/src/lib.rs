@@ -7,6 +7,7 @@ pub mod evaluate;
 pub mod garment;
 pub mod gltf;
 pub mod ground_truth;
+mod html;
 pub mod motion;
 pub mod render;
 pub mod report;
