@@ -1,6 +1,7 @@
 // ĥ_i = concat_c Σ_j α_ij (v_c + ε_c), α = softmax_j(q_c · (k_c + ε_c) / √d), then gate.wgsl. network.md §3.
 // Twin: crate/core/src/cpu/attend.rs
 // One workgroup per vertex, `lanes` invocations per head; neighbours in blocks, with a running softmax: any degree will do.
+// For software adapters, where barriers cost the most, there is attend.vertex.wgsl.
 
 struct Params {
     vertices: u32,
@@ -46,14 +47,12 @@ fn reduce(t: u32, lanes: u32, blocks: u32) {
     workgroupBarrier();
 }
 
-// k_c + ε_c (part 1) or v_c + ε_c (part 2) of neighbour j at feature f; `edge` is e_ij.
-fn with_edge(part: u32, j: u32, f: u32, edge: mat2x3<f32>) -> f32 {
-    let term = dot(weights[3u * f].xyz, edge[0]) + dot(weights[3u * f + 1u].xyz, edge[1]);
-    return projected[(4u * j + part) * params.features + f] + term;
-}
-
-fn edge_of(i: u32, j: u32) -> mat2x3<f32> {
-    return mat2x3((potentials[2u * j] - potentials[2u * i]).xyz, (potentials[2u * j + 1u] - potentials[2u * i + 1u]).xyz);
+// The sum of `value` over the workgroup.
+fn total(t: u32, value: f32) -> f32 {
+    workgroupBarrier();
+    sums[t] = value;
+    reduce(t, SIZE, 1u);
+    return sums[0];
 }
 
 // One head's attention for vertex i: features `first`, and every `lanes`th after it, below `end`.
@@ -116,5 +115,5 @@ fn attend(
         attention(i, t, first, min((head + 1u) * d, params.features));
     }
     workgroupBarrier();
-    gate(i, t);
+    gate(i, t, 0u);
 }

@@ -126,7 +126,7 @@ fn tint_accepts_each() {
         accepts(&shader.source()).unwrap_or_else(|said| panic!("{}: {said}", shader.name));
     }
     let text = super::ATTEND.source();
-    let broken = text.replacen("    gate(i, t);", "    if (t == 0u) {\n        gate(i, t);\n    }", 1);
+    let broken = text.replacen("    gate(i, t, 0u);", "    if (t == 0u) {\n        gate(i, t, 0u);\n    }", 1);
     assert_ne!(broken, text);
     assert!(accepts(&broken).is_err(), "a barrier that not every invocation reaches is refused");
 }

@@ -24,12 +24,12 @@ pub(crate) struct Step {
     groups: [u32; 2],
 }
 
-/// A prediction read back.
+/// A prediction read back: of the cloth's n vertices, or of the d drawn ones.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prediction {
-    /// Positions [n, 3], world, metres.
+    /// Positions, three numbers each, world, metres.
     pub positions: Vec<f32>,
-    /// Unit vertex normals [n, 3].
+    /// Unit vertex normals, three numbers each.
     pub normals: Vec<f32>,
 }
 
@@ -143,7 +143,18 @@ impl Predictor {
     /// # Errors
     /// [`Error::Lost`]; a prediction that is not finite.
     pub fn read(&self) -> impl Future<Output = Result<Prediction>> + use<> {
-        let buffers = [self.positions(), self.normals()];
+        self.read_both([self.positions(), self.normals()])
+    }
+
+    /// As [`Self::read`], of the drawn vertices [d, 3].
+    ///
+    /// # Errors
+    /// [`Error::Lost`]; a prediction that is not finite.
+    pub fn read_drawn(&self) -> impl Future<Output = Result<Prediction>> + use<> {
+        self.read_both([self.drawn_positions(), self.drawn_normals()])
+    }
+
+    fn read_both(&self, buffers: [&wgpu::Buffer; 2]) -> impl Future<Output = Result<Prediction>> + use<> {
         let read = self.reader.read::<f32>(self.model.gpu(), &buffers);
         async move {
             let mut results = read.await?;

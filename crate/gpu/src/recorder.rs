@@ -192,6 +192,11 @@ impl<'m> Recorder<'m> {
     }
 }
 
+/// The largest power of two that is not above `number`.
+fn power_of_two_below(number: usize) -> usize {
+    1 << number.ilog2()
+}
+
 impl Device for Recorder<'_> {
     type Buffer = Id;
     type Indices = IndexId;
@@ -296,7 +301,7 @@ impl Device for Recorder<'_> {
         projected: &mut Id,
         potentials: &Id,
         layer: &Layer<Id>,
-        _attended: &mut Id,
+        attended: &mut Id,
         output: &mut Id,
     ) {
         let Sizes { vertices: n, features, heads, .. } = sizes;
@@ -304,7 +309,7 @@ impl Device for Recorder<'_> {
         if features > shaders::MAX_FEATURES {
             self.fail("features of a graph layer".to_owned(), features as u64, shaders::MAX_FEATURES as u64);
         }
-        let operands = [
+        let mut operands = vec![
             self.pack(("offsets", graph.offsets.0), |this| this.indices[graph.offsets.0].to_vec()),
             self.pack(("neighbours", graph.neighbours.0), |this| this.indices[graph.neighbours.0].to_vec()),
             self.input(*projected),
@@ -316,21 +321,21 @@ impl Device for Recorder<'_> {
             self.output(*output, features, whole(features)),
         ];
         let d = features / heads;
-        let lanes = d.next_power_of_two().min((shaders::LANES / heads.min(shaders::LANES)).next_power_of_two());
-        let lanes = lanes.min(shaders::LANES);
         let params = shaders::Attend {
             vertices: n as u32,
             features: features as u32,
             stride: whole(features) as u32,
             heads: heads as u32,
-            lanes: lanes as u32,
+            lanes: d.next_power_of_two().min(power_of_two_below(shaders::LANES / heads.min(shaders::LANES))) as u32,
             scale: 1.0 / (d as f32).sqrt(),
         };
-        let edges = self.indices[graph.neighbours.0].len();
+        let flops = self.indices[graph.neighbours.0].len() * features * 28 + n * features * 19;
+        if self.gpu.is_software() {
+            operands.push(self.output(*attended, features, features));
+            return self.dispatch(&shaders::ATTEND_VERTEX, params, &operands, [n, 1], *output, flops);
+        }
         let limit = self.gpu.device().limits().max_compute_workgroups_per_dimension as usize;
-        let extent = [n.min(limit), n.div_ceil(limit)];
-        let flops = edges * features * 28 + n * features * 19;
-        self.dispatch(&shaders::ATTEND, params, &operands, extent, *output, flops);
+        self.dispatch(&shaders::ATTEND, params, &operands, [n.min(limit), n.div_ceil(limit)], *output, flops);
     }
 
     fn normals(&mut self, positions: &Id, triangles: &[u32], normals: &mut Id) {
