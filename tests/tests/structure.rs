@@ -113,14 +113,20 @@ fn every_operation_has_its_twins() {
     let functions = body.lines().filter_map(|line| line.strip_prefix("    fn ")?.split('(').next());
     // Storage is no operation. What follows the network, and what feeds it from the pose alone, needs no gradient.
     let operations: Vec<&str> = functions.filter(|name| !["buffer", "indices", "write"].contains(name)).collect();
-    for known in ["linear", "blend", "add", "skin", "attend", "gate"] {
+    for known in ["linear", "blend", "skin", "attend", "normals"] {
         assert!(operations.contains(&known), "trait Device has no {known}");
     }
     for operation in &operations {
         assert!(has(&format!("crate/core/src/cpu/{operation}.rs")), "{operation} has no file in crate/core/src/cpu");
         let gradient = has(&format!("crate/author/src/train/gradient/{operation}.rs"));
-        let wanted = !["features", "normals"].contains(operation);
+        let wanted = !["body_frame", "features", "normals", "surface"].contains(operation);
         assert_eq!(gradient, wanted, "{operation}: a file in crate/author/src/train/gradient");
+        assert!(has(&format!("shaders/{operation}.wgsl")), "{operation} has no shader");
+    }
+    // And each shader, NAME.wgsl or NAME.VARIANT.wgsl, has its twin.
+    let shaders = tree.iter().filter_map(|source| source.path.strip_prefix("shaders/")?.strip_suffix(".wgsl"));
+    for name in shaders.filter_map(|file| file.split('.').next()) {
+        assert!(has(&format!("crate/core/src/cpu/{name}.rs")), "{name}.wgsl has no twin in crate/core/src/cpu");
     }
 }
 

@@ -14,7 +14,7 @@ fn a_recorded_frame_is_accepted_at_default_limits() {
     let (device, queue) = wgpu::Device::noop(&descriptor);
     assert_eq!(device.limits(), limits);
     assert_eq!(limits.max_storage_buffers_per_shader_stage, 8);
-    let gpu = Gpu::from_device(device.clone(), queue);
+    let gpu = Gpu::from_device(device.clone(), queue.clone());
     let model = HostModel::parse(SMALL).expect("golden model");
     let model = block_on(Model::new(&gpu, &model)).expect("a recorded model");
     let mut predictor = block_on(Predictor::new(&model)).expect("a predictor");
@@ -36,5 +36,6 @@ fn a_recorded_frame_is_accepted_at_default_limits() {
     assert!(block_on(scope.pop()).is_some());
     drop((predictor, model, gpu));
     // A lent device lives on.
-    device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default()).finish();
+    queue.submit([device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default()).finish()]);
+    assert!(device.poll(wgpu::PollType::wait_indefinitely()).is_ok());
 }
