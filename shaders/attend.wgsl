@@ -1,7 +1,6 @@
 // ĥ_i = concat_c Σ_j α_ij (v_c + ε_c), α = softmax_j(q_c · (k_c + ε_c) / √d), then gate.wgsl. network.md §3.
 // Twin: crate/core/src/cpu/attend.rs
 // One workgroup per vertex, `lanes` invocations per head; neighbours in blocks, with a running softmax: any degree will do.
-// For software adapters, where barriers cost the most, there is attend.vertex.wgsl.
 
 struct Params {
     vertices: u32,
@@ -29,12 +28,12 @@ struct Params {
 
 const SIZE = 64u;
 const BLOCK = 8u;
-const FEATURES = 2048u;
-
+// Features of a vertex: the less room, the more vertices at a time.
+override room: u32 = 2048;
 var<workgroup> sums: array<f32, SIZE * BLOCK>;
-var<workgroup> attended: array<f32, FEATURES>;
+var<workgroup> attended: array<f32, room>;
 
-// Sums over groups of `lanes` invocations; every invocation finds its group's in the group's first place.
+// Sums over groups of `lanes` invocations, left in the group's first place.
 fn reduce(t: u32, lanes: u32, blocks: u32) {
     for (var half = lanes / 2u; half > 0u; half /= 2u) {
         workgroupBarrier();
@@ -58,6 +57,9 @@ fn total(t: u32, value: f32) -> f32 {
 // One head's attention for vertex i: features `first`, and every `lanes`th after it, below `end`.
 fn attention(i: u32, t: u32, first: u32, end: u32) {
     let group = t / params.lanes * params.lanes;
+    for (var f = first; f < end; f += params.lanes) {
+        attended[f] = 0.0;
+    }
     var largest = -1e30;
     var sum = 0.0;
     for (var start = offsets[i]; start < offsets[i + 1u]; start += BLOCK) {
@@ -72,12 +74,11 @@ fn attention(i: u32, t: u32, first: u32, end: u32) {
             sums[e * SIZE + t] = product * params.scale;
         }
         reduce(t, params.lanes, count);
-        var highest = largest;
+        let before = largest;
         for (var e = 0u; e < count; e++) {
-            highest = max(highest, sums[e * SIZE + group]);
+            largest = max(largest, sums[e * SIZE + group]);
         }
-        let shrink = exp(largest - highest);
-        largest = highest;
+        let shrink = exp(before - largest);
         sum *= shrink;
         for (var f = first; f < end; f += params.lanes) {
             attended[f] *= shrink;

@@ -131,7 +131,9 @@ shaders! {
     SURFACE: Surface, "surface" + [], [Read Read Read Write Write], [64, 1];
 }
 
-/// Most features of a graph layer: what attend.wgsl holds in workgroup memory.
+/// The override of attend.wgsl that says how many features it holds in workgroup memory.
+pub const ROOM: &str = "room";
+/// The most that may be.
 pub const MAX_FEATURES: usize = 2048;
 /// Invocations of a workgroup of attend.wgsl.
 pub const LANES: usize = 64;

@@ -1,7 +1,7 @@
 //! A GPU: device and queue, made by us or lent to us, with one pipeline per shader.
 
 use crate::{Error, Result};
-use ctsn_shaders::{Access, Shader};
+use ctsn_shaders::{self as shaders, Access, Shader};
 use futures_channel::oneshot;
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -19,7 +19,7 @@ struct Inner {
     name: String,
     own: bool,
     loss: Arc<Mutex<Loss>>,
-    pipelines: Mutex<HashMap<&'static str, Pipeline>>,
+    pipelines: Mutex<HashMap<(&'static str, Option<u32>), Pipeline>>,
 }
 
 /// Whether the device is gone, and who wants to know.
@@ -184,12 +184,13 @@ impl Gpu {
     }
 
     /// The compiled shader, compiled at its first use.
-    pub(crate) fn pipeline(&self, shader: &'static Shader) -> Pipeline {
-        lock(&self.inner.pipelines).entry(shader.name).or_insert_with(|| compile(&self.inner.device, shader)).clone()
+    pub(crate) fn pipeline(&self, shader: &'static Shader, room: Option<u32>) -> Pipeline {
+        let compiled = || compile(&self.inner.device, shader, room);
+        lock(&self.inner.pipelines).entry((shader.name, room)).or_insert_with(compiled).clone()
     }
 }
 
-fn compile(device: &wgpu::Device, shader: &Shader) -> Pipeline {
+fn compile(device: &wgpu::Device, shader: &Shader, room: Option<u32>) -> Pipeline {
     let label = Some(shader.name);
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label,
@@ -211,12 +212,17 @@ fn compile(device: &wgpu::Device, shader: &Shader) -> Pipeline {
         bind_group_layouts: &[Some(&layout)],
         immediate_size: 0,
     });
+    let constants: Vec<_> = room.map(|room| (shaders::ROOM, f64::from(room))).into_iter().collect();
     let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
         label,
         layout: Some(&pipeline_layout),
         module: &module,
         entry_point: Some(shader.entry()),
-        compilation_options: wgpu::PipelineCompilationOptions::default(),
+        // No shader reads workgroup memory that it did not write.
+        compilation_options: wgpu::PipelineCompilationOptions {
+            constants: &constants,
+            zero_initialize_workgroup_memory: false,
+        },
         cache: None,
     });
     Pipeline { pipeline, layout }

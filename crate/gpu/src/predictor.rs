@@ -43,8 +43,11 @@ impl Predictor {
         let mut predictor = gpu.scoped(|| Ok(Self::make(model))).await?;
         let rest: Vec<f32> = model.rig().joints.iter().flat_map(|_| IDENTITY).collect();
         predictor.predict_row_major(&rest, Streams::Both)?;
-        predictor.stages().await?;
-        Ok(predictor)
+        match predictor.read().await {
+            // A model may well overflow in a pose of our making.
+            Ok(_) | Err(Error::Core(_)) => Ok(predictor),
+            Err(error) => Err(error),
+        }
     }
 
     fn make(model: &Model) -> Self {
@@ -191,7 +194,7 @@ impl Predictor {
 
 impl Step {
     fn new(gpu: &Gpu, dispatch: &Dispatch, constants: &[wgpu::Buffer], activations: &[wgpu::Buffer]) -> Self {
-        let pipeline = gpu.pipeline(dispatch.shader);
+        let pipeline = gpu.pipeline(dispatch.shader, dispatch.room);
         let operand = |operand: &Operand| match operand {
             Operand::Constant(constant) => &constants[*constant],
             Operand::Activation(room) => &activations[*room],

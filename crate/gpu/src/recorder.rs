@@ -159,6 +159,13 @@ impl<'m> Recorder<'m> {
         Operand::Activation(self.room(id).unwrap_or_else(|| unreachable!("an operation reads what was written")))
     }
 
+    /// Workgroup memory for so many features in the last dispatch.
+    fn give_room(&mut self, features: usize) {
+        if let Some(dispatch) = self.dispatches.last_mut() {
+            dispatch.room = Some(features as u32);
+        }
+    }
+
     /// Records a dispatch over `extent` outputs by x and y; its stage is that of `output`.
     fn dispatch<P: Pod>(
         &mut self,
@@ -184,6 +191,6 @@ impl<'m> Recorder<'m> {
             unreachable!("an operation writes activations only")
         };
         let (stage, groups, operands) = (stage.clone(), groups.map(|groups| groups as u32), operands.to_vec());
-        self.dispatches.push(Dispatch { shader, stage, params, operands, groups, cost });
+        self.dispatches.push(Dispatch { shader, stage, params, room: None, operands, groups, cost });
     }
 }

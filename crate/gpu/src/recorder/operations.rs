@@ -154,6 +154,7 @@ impl Device for Recorder<'_> {
         }
         let limit = self.gpu.device().limits().max_compute_workgroups_per_dimension as usize;
         self.dispatch(&shaders::ATTEND, params, &operands, [n.min(limit), n.div_ceil(limit)], *output, flops);
+        self.give_room(features);
     }
 
     fn normals(&mut self, positions: &Id, triangles: &[u32], normals: &mut Id) {
