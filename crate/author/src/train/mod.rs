@@ -35,6 +35,9 @@ pub use variant::{Part, Variant};
 /// Shares a batch is dealt in.
 const SHARES: usize = 4;
 
+/// A gradient per parameter array.
+type Sums = Vec<Vec<f32>>;
+
 /// How to train.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
@@ -83,7 +86,7 @@ pub struct Trainer {
     /// A lane per thread.
     lanes: Vec<Lane>,
     /// Gradients of `parameters`, summed over the samples of each share of the batch.
-    sums: Vec<Vec<Vec<f32>>>,
+    sums: Vec<Sums>,
     curve: Vec<Row>,
     /// E_dist on the validation slice before the first epoch, metres.
     pub untrained: Option<f32>,
@@ -199,8 +202,8 @@ impl Trainer {
         let (tape, shared, items, parameters) = (&self.tape, &self.shared, &self.items, &self.parameters);
         let (activations, coarse, shares) = (&self.activations, self.coarse, self.sums.len());
         let each = shares.div_ceil(self.lanes.len());
-        let run = |(thread, (lane, sums)): (usize, (&mut Lane, &mut [Vec<Vec<f32>>]))| {
-            let share = |(number, sums): (usize, &mut Vec<Vec<f32>>)| {
+        let run = |(thread, (lane, sums)): (usize, (&mut Lane, &mut [Sums]))| {
+            let share = |(number, sums): (usize, &mut Sums)| {
                 sums.iter_mut().for_each(|sum| sum.fill(0.0));
                 lane.exchange(parameters, sums);
                 let mut loss = Loss::default();
