@@ -13,7 +13,7 @@ use ctsn_core::network::Activations;
 use ctsn_core::pose::BodyFrame;
 
 /// One sample as the tape sees it.
-pub(super) struct Item {
+pub(crate) struct Item {
     pub frame: BodyFrame,
     pub truth: Vec<f32>,
     /// What the skeleton stream learns.
@@ -21,7 +21,7 @@ pub(super) struct Item {
 }
 
 /// The predictions that are compared, and how much each comparison teaches: 1 or 0.
-pub(super) struct Targets {
+pub(crate) struct Targets {
     /// The coarse prediction, against the smoothed truth.
     pub coarse: (Id, f32),
     /// The whole prediction, against the truth.
