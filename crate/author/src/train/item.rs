@@ -1,9 +1,9 @@
 //! One sample on the tape: its body frame and targets, the losses and what flows back from them. network.md §6.
 
+use super::Loss;
 use super::gradient::distance::distance;
 use super::smooth::Smoother;
 use super::tape::{Id, Lane, Shared, Tape};
-use super::{Loss, Variant};
 use crate::dataset::Sample;
 use crate::evaluate::differences;
 use crate::rig::vertices;
@@ -20,23 +20,6 @@ pub(crate) struct Item {
     pub smooth: Vec<f32>,
 }
 
-/// The predictions that are compared, and how much each comparison teaches: 1 or 0.
-pub(crate) struct Targets {
-    /// The coarse prediction, against the smoothed truth.
-    pub coarse: (Id, f32),
-    /// The whole prediction, against the truth.
-    pub fine: (Id, f32),
-}
-
-impl Targets {
-    /// `coarse` is the coarse template skinned. Without mesh stream there is only the coarse prediction, and its target is the truth.
-    pub fn new(a: &Activations<Id>, coarse: Id, variant: Variant) -> Self {
-        let weight = |learns: bool| if learns { 1.0 } else { 0.0 };
-        let fine = variant.mesh || !variant.skeleton;
-        Self { coarse: (coarse, weight(variant.skeleton)), fine: (a.positions, weight(fine)) }
-    }
-}
-
 impl Item {
     /// A sample for `model`, its coarse target smoothed where a smoother is given.
     pub fn new(model: &HostModel, sample: &Sample, smoother: Option<&Smoother>) -> Result<Self> {
@@ -50,25 +33,26 @@ impl Item {
         Ok(Self { frame, truth: sample.truth.clone(), smooth })
     }
 
-    /// Forward and backward pass; gradients are those of the mean loss of `batch` samples.
+    /// Forward and backward pass; gradients are those of the mean loss of `batch` samples. `coarse` is the coarse prediction where both
+    /// streams learn: what is left of the network otherwise learns the truth itself.
     pub fn learn(
         &self,
         tape: &Tape,
         shared: &Shared,
         lane: &mut Lane,
         a: &Activations<Id>,
-        targets: &Targets,
+        coarse: Option<Id>,
         batch: usize,
     ) -> Loss {
         self.predict(tape, shared, lane, a);
-        lane.clear(shared, false);
-        let mut against = |(predicted, weight): (Id, f32), truth: &[f32]| {
+        let mut against = |predicted: Id, truth: &[f32]| {
             let mut g = lane.take_gradient(predicted);
-            let loss = distance(lane.value(shared, predicted), truth, weight / batch as f32, &mut g);
+            let loss = distance(lane.value(shared, predicted), truth, 1.0 / batch as f32, &mut g);
             *lane.gradient_mut(predicted) = g;
             loss
         };
-        let loss = Loss { coarse: against(targets.coarse, &self.smooth), fine: against(targets.fine, &self.truth) };
+        let fine = against(a.positions, &self.truth);
+        let loss = Loss { fine, coarse: coarse.map_or(fine, |coarse| against(coarse, &self.smooth)) };
         tape.backward(shared, lane);
         loss
     }

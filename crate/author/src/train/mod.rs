@@ -1,5 +1,5 @@
 //! Training: the network's forward pass recorded on the [`Tape`], its gradients, Adam. network.md §6.
-//! Each step's batch is dealt to a fixed number of lanes and summed in their order, so the result does not depend on threads.
+//! Each step's batch is dealt in a fixed number of shares, summed in their order, so the result does not depend on threads.
 
 pub(crate) mod adam;
 mod checkpoint;
@@ -25,7 +25,7 @@ use ctsn_core::network::{Activations, DeviceModel, Streams, forward};
 pub use fit::{End, Files, Row};
 pub use initial::{Architecture, initial};
 pub(crate) use initial::{layer, mlp};
-use item::{Item, Targets};
+use item::Item;
 use rayon::prelude::*;
 pub use slice::{Slices, slices};
 use smooth::Smoother;
@@ -33,8 +33,8 @@ use std::time::{Duration, Instant};
 use tape::{Id, Lane, Shared, Tape};
 pub use variant::{Part, Variant};
 
-/// Lanes that share a batch.
-const LANES: usize = 4;
+/// Shares a batch is dealt in.
+const SHARES: usize = 4;
 
 /// How to train.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -80,8 +80,11 @@ pub struct Trainer {
     parameters: Vec<Id>,
     moments: Vec<Moments>,
     activations: Activations<Id>,
-    targets: Targets,
+    coarse: Option<Id>,
+    /// A lane per thread.
     lanes: Vec<Lane>,
+    /// Gradients of `parameters`, summed over the samples of each share of the batch.
+    sums: Vec<Vec<Vec<f32>>>,
     curve: Vec<Row>,
     /// E_dist on the validation slice before the first epoch, metres.
     pub untrained: Option<f32>,
@@ -105,8 +108,7 @@ impl Trainer {
         }
         variant.silence(&mut model);
         let smoother = Smoother::new(model.sizes.vertices, &setup.triangles);
-        let smoother = Some(&smoother).filter(|_| variant.mesh);
-        let items = samples.iter().map(|sample| Item::new(&model, sample, smoother)).collect::<Result<_>>()?;
+        let items = samples.iter().map(|sample| Item::new(&model, sample, Some(&smoother))).collect::<Result<_>>()?;
         let mut tape = Tape::default();
         let recorded = upload(&model, &mut tape);
         let learns = |(i, id): (usize, &Id)| variant.learns(i).then_some(*id);
@@ -115,11 +117,16 @@ impl Trainer {
         let mut activations = Activations::new(&model, |length| tape.buffer(&vec![0.0; length]));
         let streams = if variant.mesh { Streams::Both } else { Streams::Skeleton };
         forward(&mut tape, &recorded, streams, Space::Body, &mut activations);
-        let mut coarse = tape.buffer(&vec![0.0; model.sizes.vertices * 3]);
-        tape.skin(&activations.coarse, &recorded.skin, &activations.body_frame, Space::Body, &mut coarse);
-        let targets = Targets::new(&activations, coarse, variant);
-        let lanes = (0..LANES.min(batch)).map(|_| tape.lane(&shared)).collect();
-        let moments = parameters.iter().map(|id| Moments::new(shared.get(*id).len())).collect();
+        let coarse = (variant.skeleton && variant.mesh).then(|| {
+            let mut coarse = tape.buffer(&vec![0.0; model.sizes.vertices * 3]);
+            tape.skin(&activations.coarse, &recorded.skin, &activations.body_frame, Space::Body, &mut coarse);
+            coarse
+        });
+        let shares = SHARES.min(batch);
+        let lanes = (0..shares.min(rayon::current_num_threads())).map(|_| tape.lane(&shared)).collect();
+        let lengths = || parameters.iter().map(|id| shared.get(*id).len());
+        let sums = vec![lengths().map(|length| vec![0.0; length]).collect(); shares];
+        let moments = lengths().map(Moments::new).collect();
         Ok(Self {
             model,
             settings,
@@ -129,8 +136,9 @@ impl Trainer {
             parameters,
             moments,
             activations,
-            targets,
+            coarse,
             lanes,
+            sums,
             curve: Vec::new(),
             untrained: None,
             best: Vec::new(),
@@ -189,23 +197,32 @@ impl Trainer {
     /// Optimisation step number `done`.
     fn step(&mut self, batch: &[usize], done: usize) -> Loss {
         let rate = self.rate(done);
-        let (tape, shared, items) = (&self.tape, &self.shared, &self.items);
-        let (activations, targets) = (&self.activations, &self.targets);
-        let lanes = self.lanes.len();
-        let run = |(number, lane): (usize, &mut Lane)| {
-            lane.clear(shared, true);
-            let mut loss = Loss::default();
-            for item in batch.iter().skip(number).step_by(lanes) {
-                let sample = items[*item].learn(tape, shared, lane, activations, targets, batch.len());
-                loss.coarse += sample.coarse;
-                loss.fine += sample.fine;
-            }
-            loss
+        let (tape, shared, items, parameters) = (&self.tape, &self.shared, &self.items, &self.parameters);
+        let (activations, coarse, shares) = (&self.activations, self.coarse, self.sums.len());
+        let each = shares.div_ceil(self.lanes.len());
+        let run = |(thread, (lane, sums)): (usize, (&mut Lane, &mut [Vec<Vec<f32>>]))| {
+            let share = |(number, sums): (usize, &mut Vec<Vec<f32>>)| {
+                sums.iter_mut().for_each(|sum| sum.fill(0.0));
+                lane.exchange(parameters, sums);
+                let mut loss = Loss::default();
+                for item in batch.iter().skip(thread * each + number).step_by(shares) {
+                    let sample = items[*item].learn(tape, shared, lane, activations, coarse, batch.len());
+                    loss.coarse += sample.coarse;
+                    loss.fine += sample.fine;
+                }
+                lane.exchange(parameters, sums);
+                loss
+            };
+            sums.iter_mut().enumerate().map(share).collect()
         };
-        let losses: Vec<Loss> = self.lanes.par_iter_mut().enumerate().map(run).collect();
-        self.update(done + 1, rate);
+        let shares = self.lanes.par_iter_mut().zip(self.sums.par_chunks_mut(each)).enumerate();
+        let losses: Vec<Vec<Loss>> = shares.map(run).collect();
+        for (i, (id, moments)) in self.parameters.iter().zip(&mut self.moments).enumerate() {
+            let gradients: Vec<&[f32]> = self.sums.iter().map(|sums| sums[i].as_slice()).collect();
+            moments.step(done + 1, rate, &gradients, self.shared.get_mut(*id));
+        }
         let count = batch.len() as f32;
-        let sum = |part: fn(&Loss) -> f32| losses.iter().map(part).sum::<f32>() / count;
+        let sum = |part: fn(&Loss) -> f32| losses.iter().flatten().map(part).sum::<f32>() / count;
         Loss { coarse: sum(|loss| loss.coarse), fine: sum(|loss| loss.fine) }
     }
 
@@ -214,29 +231,14 @@ impl Trainer {
         let (tape, shared, a, model) = (&self.tape, &self.shared, &self.activations, &self.model);
         let lanes = self.lanes.len();
         let run = |(number, lane): (usize, &mut Lane)| {
-            let mut total = [0.0; 2];
-            for sample in samples.iter().skip(number).step_by(lanes) {
-                let (distance, normal) = Item::new(model, sample, None)?.compare(model, tape, shared, lane, a);
-                total[0] += distance;
-                total[1] += normal;
-            }
-            Ok(total)
+            let mine = samples.iter().skip(number).step_by(lanes);
+            mine.map(|sample| Ok(Item::new(model, sample, None)?.compare(model, tape, shared, lane, a))).collect()
         };
-        let totals = self.lanes.par_iter_mut().enumerate().map(run).collect::<Result<Vec<[f64; 2]>>>()?;
-        let mean = |part: usize| (totals.iter().map(|total| total[part]).sum::<f64>() / samples.len() as f64) as f32;
-        Ok((mean(0), mean(1)))
-    }
-
-    /// Sums the lanes' gradients in order and steps every parameter.
-    fn update(&mut self, step: usize, rate: f32) {
-        let Some((first, others)) = self.lanes.split_first_mut() else { return };
-        for (id, moments) in self.parameters.iter().zip(&mut self.moments) {
-            let gradient = first.gradient_mut(*id);
-            for lane in &*others {
-                gradient.iter_mut().zip(lane.gradient(*id)).for_each(|(sum, g)| *sum += g);
-            }
-            moments.step(step, rate, gradient, self.shared.get_mut(*id));
-        }
+        let errors = self.lanes.par_iter_mut().enumerate().map(run).collect::<Result<Vec<Vec<(f64, f64)>>>>()?;
+        // Summed in the samples' order, whatever the number of lanes.
+        let ordered = || (0..samples.len()).map(|i| errors[i % lanes][i / lanes]);
+        let mean = |total: f64| (total / samples.len() as f64) as f32;
+        Ok((mean(ordered().map(|error| error.0).sum()), mean(ordered().map(|error| error.1).sum())))
     }
 
     /// The model as trained so far.

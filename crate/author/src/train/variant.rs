@@ -7,7 +7,7 @@ use ctsn_core::model::HostModel;
 pub enum Part {
     /// The skeleton-based residual stream: Δ_S = 0
     Skeleton,
-    /// The mesh-based residual stream: Δ_M = 0, the skeleton stream learns the truth itself
+    /// The mesh-based residual stream: Δ_M = 0, and the skeleton stream learns the truth itself
     Mesh,
     /// What is learned of the skin weights: ΔW_C = 0
     Weights,

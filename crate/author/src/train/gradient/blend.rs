@@ -5,7 +5,7 @@ use ctsn_core::cpu::Level;
 use ctsn_core::cpu::vector::axpy;
 use fearless_simd::{Simd, dispatch};
 
-/// weights [count] or [n, count], basis [n, 3, count], g [n, 3] -> dweights, dbasis.
+/// weights [count] or [n, count], basis [n, 3, count], g [n, 3] -> dweights (overwritten), dbasis.
 pub fn blend(level: Level, weights: &[f32], basis: &[f32], g: &[f32], dweights: &mut [f32], dbasis: &mut [f32]) {
     dispatch!(level, simd => kernel(simd, weights, basis, g, dweights, dbasis));
 }
@@ -13,6 +13,7 @@ pub fn blend(level: Level, weights: &[f32], basis: &[f32], g: &[f32], dweights: 
 #[inline(always)]
 fn kernel<S: Simd>(simd: S, weights: &[f32], basis: &[f32], g: &[f32], dweights: &mut [f32], dbasis: &mut [f32]) {
     let count = basis.len() / g.len();
+    dweights.fill(0.0);
     let step = if weights.len() == count { 0 } else { count };
     let rows = basis.chunks_exact(3 * count).zip(dbasis.chunks_exact_mut(3 * count));
     for (i, (g, (basis, dbasis))) in g.chunks_exact(3).zip(rows).enumerate() {

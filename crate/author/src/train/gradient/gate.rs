@@ -19,7 +19,7 @@ pub struct Inputs<'a> {
     pub output: &'a [f32],
 }
 
-/// g [n, F] -> dattended [n, F], dprojected [n, 4F] (r columns), dgate [3F], dnorm weight and bias [F].
+/// g [n, F] -> dattended [n, F] and dprojected [n, 4F] (r columns), overwritten; dgate [3F], dnorm weight and bias [F].
 pub fn gate(level: Level, inputs: &Inputs, g: &[f32], targets: [&mut [f32]; 5]) {
     dispatch!(level, simd => kernel(simd, inputs, g, targets));
 }
@@ -49,9 +49,8 @@ fn kernel<S: Simd>(simd: S, inputs: &Inputs, g: &[f32], targets: [&mut [f32]; 5]
         let dattended = &mut dattended[i * features..][..features];
         let dskip = &mut dprojected[(i * 4 + 3) * features..][..features];
         for (target, share, own, sign) in [(dattended, 1.0 - beta, w_attended, 1.0), (dskip, beta, w_skip, -1.0)] {
-            axpy(simd, share, &dz, target);
-            axpy(simd, dlogit, own, target);
-            axpy(simd, sign * dlogit, w_difference, target);
+            let parts = target.iter_mut().zip(&dz).zip(own.iter().zip(w_difference));
+            parts.for_each(|((target, dz), (own, both))| *target = share * dz + dlogit * (own + sign * both));
         }
     }
 }

@@ -1,5 +1,6 @@
 //! Gradients, one file per operation, named as the operation. `run` and `backward` hand a recorded operation its operands.
-//! Convention: a gradient is added to, never overwritten, except where a file says so.
+//! Convention: every activation is read by one operation that learns, so its gradient is overwritten; a parameter's is added to, over
+//! the samples of a lane.
 
 pub mod add;
 pub mod attend;

@@ -1,6 +1,6 @@
 //! `x_i = Σ_s w_is A_s T_i`: `dw_is = g · A_s T_i`, `dT_i = (Σ_s w_is R_s)ᵀ g`. Body frame.
 
-/// rest [n, 3], joints and weights [n, width], transforms [J + 1, 3, 4], g [n, 3] -> drest, dweights (empty: not wanted).
+/// rest [n, 3], joints and weights [n, width], transforms [J + 1, 3, 4], g [n, 3] -> drest (overwritten), dweights; empty: not wanted.
 pub fn skin(
     rest: &[f32],
     joints: &[u32],
@@ -24,7 +24,7 @@ pub fn skin(
             (0..3).for_each(|c| dt[c] += weights[slot] * row[c]);
         }
         if !drest.is_empty() {
-            (0..3).for_each(|c| drest[3 * i + c] += dt[c]);
+            (0..3).for_each(|c| drest[3 * i + c] = dt[c]);
         }
     }
 }

@@ -1,12 +1,10 @@
 //! `ctsn train` on made-up data: what it leaves behind, and what is refused.
 
-mod made;
-
+use super::made::Folder;
 use ctsn_author::dataset::{Sample, pose_path};
 use ctsn_author::synthetic;
 use ctsn_core::file::{Tensor, Tensors};
 use ctsn_core::model::HostModel;
-use made::Folder;
 
 const TRAIN: &str = "train data -o out.safetensors --embedding 4 --basis 8 --layers 1 --features 8 --heads 2";
 

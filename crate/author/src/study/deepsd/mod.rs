@@ -3,34 +3,27 @@
 //! Descriptors come from graph transformer layers as the network's own. DeePSD's descriptor of the garment as a whole is left out: for
 //! one garment it is a constant. Weights are added to `W_C^I`, as ΔW_C is, not normalised.
 
+mod garment;
+
 use crate::dataset::{Sample, Setup};
 use crate::evaluate::{Judge, differences, predictions};
-use crate::rig::{Mesh, numbers, vertices};
+use crate::rig::vertices;
 use crate::train::adam::{Moments, cosine};
 use crate::train::gradient::distance::distance;
 use crate::train::item::Item;
-use crate::train::tape::{Id, IndexId, Lane, Shared, Tape};
-use crate::train::{Row, Settings, Slices, layer, mlp, upload};
+use crate::train::tape::{Id, Lane, Shared, Tape};
+use crate::train::{Row, Settings, Slices, mlp, upload};
 use crate::{Error, Result};
 use ctsn_core::Streams;
-use ctsn_core::device::{Activation, Device, Space};
-use ctsn_core::model::{HostModel, Layer, Linear, Sizes, Skin};
+use ctsn_core::device::{Device, Space};
+use ctsn_core::model::{HostModel, Skin};
 use ctsn_core::network::{Activations, forward};
-use ctsn_core::topology::Graph;
 use rayon::prelude::*;
 use std::time::Instant;
 
-/// Graph layers, heads and features of the descriptors.
-const LAYERS: usize = 2;
-const HEADS: usize = 4;
-const FEATURES: usize = 64;
-/// Blend shapes, and hidden widths of the MLPs: pose, blend shapes, weights.
+/// Blend shapes, and hidden widths of the pose's MLP.
 const SHAPES: usize = 128;
 const POSE: [usize; 3] = [256; 3];
-const BLEND: [usize; 2] = [256; 2];
-const WEIGHTS: [usize; 1] = [128];
-/// Of the last layers' initial weights, so that training starts near plain skinning.
-const SMALL: f32 = 0.01;
 /// Lanes that share a batch.
 const LANES: usize = 4;
 
@@ -74,11 +67,17 @@ impl Half {
         Self { tape, shared, parameters, moments }
     }
 
-    /// Adam on the parameters from `first` on.
-    fn update(&mut self, first: usize, lane: &Lane, step: usize, rate: f32) {
+    /// Adam on the parameters from `first` on, against the sum of the lanes' gradients.
+    fn update(&mut self, first: usize, lanes: &[Lane], step: usize, rate: f32) {
         for (id, moments) in self.parameters.iter().zip(&mut self.moments).skip(first) {
-            moments.step(step, rate, lane.gradient(*id), self.shared.get_mut(*id));
+            let gradients: Vec<&[f32]> = lanes.iter().map(|lane| lane.gradient(*id)).collect();
+            moments.step(step, rate, &gradients, self.shared.get_mut(*id));
         }
+    }
+
+    /// Forgets the gradients of the parameters.
+    fn clear(parameters: &[Id], lane: &mut Lane) {
+        parameters.iter().for_each(|id| lane.gradient_mut(*id).fill(0.0));
     }
 }
 
@@ -94,7 +93,7 @@ impl Deepsd {
         let dense = (0..n * joints).map(|slot| (slot % joints) as u32).collect();
         model.skin = Skin { joints: dense, weights, width: joints };
         let items = samples.iter().map(|sample| Item::new(&model, sample, None)).collect::<Result<_>>()?;
-        let (garment, of_garment) = record_garment(&model, setup, &mut rng);
+        let (garment, of_garment) = garment::record(&model, setup, &mut rng);
         let mut tape = Tape::default();
         let recorded = upload(&model, &mut tape);
         let mut parameters = vec![recorded.skeleton, recorded.skin.weights];
@@ -160,16 +159,16 @@ impl Deepsd {
     /// One optimisation step; the sum of the losses.
     fn step(&mut self, batch: &[usize], step: usize, rate: f32) -> f32 {
         self.pass_on();
-        let (tape, shared, items, a) = (&self.pose.tape, &self.pose.shared, &self.items, &self.activations);
+        let Half { tape, shared, parameters, .. } = &self.pose;
+        let (items, a) = (&self.items, &self.activations);
         let lanes = self.lanes.len();
         let run = |(number, lane): (usize, &mut Lane)| {
-            lane.clear(shared, true);
+            Half::clear(parameters, lane);
             let mut loss = 0.0;
             for item in batch.iter().skip(number).step_by(lanes).map(|item| &items[*item]) {
                 lane.value_mut(a.pose).copy_from_slice(&item.frame.vector);
                 lane.value_mut(a.body_frame).copy_from_slice(&item.frame.transforms);
                 tape.run(shared, lane);
-                lane.clear(shared, false);
                 let mut g = std::mem::take(lane.gradient_mut(a.positions));
                 loss += distance(lane.value(shared, a.positions), &item.truth, 1.0 / batch.len() as f32, &mut g);
                 *lane.gradient_mut(a.positions) = g;
@@ -191,22 +190,20 @@ impl Deepsd {
         }
     }
 
-    /// Sums the lanes' gradients, runs the garment's half backwards and steps every parameter.
+    /// Runs the garment's half backwards from the lanes' gradients, and steps every parameter.
     fn learn(&mut self, step: usize, rate: f32) {
-        let Self { garment, garment_lane, outputs: [(shapes, weights), (of_shapes, of_weights)], pose, .. } = self;
-        let Some((first, others)) = self.lanes.split_first_mut() else { return };
-        for id in &pose.parameters {
-            let sum = first.gradient_mut(*id);
-            others.iter().for_each(|lane| sum.iter_mut().zip(lane.gradient(*id)).for_each(|(sum, g)| *sum += g));
-        }
-        garment_lane.clear(&garment.shared, true);
+        let Self { garment, garment_lane, outputs: [(shapes, weights), (of_shapes, of_weights)], pose, lanes, .. } =
+            self;
+        Half::clear(&garment.parameters, garment_lane);
         for (to, from) in [(shapes, of_shapes), (weights, of_weights)] {
-            garment_lane.gradient_mut(*to).copy_from_slice(first.gradient(*from));
+            let sum = garment_lane.gradient_mut(*to);
+            sum.fill(0.0);
+            lanes.iter().for_each(|lane| sum.iter_mut().zip(lane.gradient(*from)).for_each(|(sum, g)| *sum += g));
         }
         garment.tape.backward(&garment.shared, garment_lane);
-        garment.update(0, garment_lane, step, rate);
+        garment.update(0, std::slice::from_ref(garment_lane), step, rate);
         // Blend shapes and weights come first there, and follow from the garment's half.
-        pose.update(2, first, step, rate);
+        pose.update(2, lanes, step, rate);
     }
 
     /// The model as trained so far.
@@ -221,101 +218,5 @@ impl Deepsd {
             array.copy_from_slice(self.pose.shared.get(*id));
         }
         model
-    }
-}
-
-/// Records garment at rest -> descriptors -> blend shapes [n, 3, SHAPES] and weights [n, J].
-fn record_garment(model: &HostModel, setup: &Setup, rng: &mut fastrand::Rng) -> (Half, (Id, Id)) {
-    let (n, joints) = (model.sizes.vertices, model.sizes.joints);
-    let mut tape = Tape::default();
-    let (inputs, potentials) = rest_features(model, setup);
-    let (inputs, potentials) = (tape.buffer(&inputs), tape.buffer(&potentials));
-    let initial = tape.buffer(&model.skin.weights);
-    let graph =
-        Graph { offsets: tape.indices(&model.graph.offsets), neighbours: tape.indices(&model.graph.neighbours) };
-    let layers: Vec<Layer<Id>> = (0..LAYERS)
-        .map(|l| upload_layer(&mut tape, &layer(if l == 0 { 6 } else { FEATURES }, FEATURES, rng)))
-        .collect();
-    let mut small = |widths: &[usize], tape: &mut Tape| -> Vec<Linear<Id>> {
-        let mut layers = mlp(widths, rng);
-        if let Some(last) = layers.last_mut() {
-            last.weight.iter_mut().chain(&mut last.bias).for_each(|value| *value *= SMALL);
-        }
-        layers.iter().map(|layer| upload_linear(tape, layer)).collect()
-    };
-    let blend = small(&[&[FEATURES], &BLEND[..], &[3 * SHAPES]].concat(), &mut tape);
-    let weights = small(&[&[FEATURES], &WEIGHTS[..], &[joints]].concat(), &mut tape);
-    let dense = blend.iter().chain(&weights).chain(layers.iter().map(|layer| &layer.project));
-    let mut parameters: Vec<Id> = dense.flat_map(|layer| [layer.weight, layer.bias]).collect();
-    parameters.extend(layers.iter().flat_map(|layer| [layer.edge, layer.gate, layer.norm_weight, layer.norm_bias]));
-    let mut half = Half::new(tape, parameters);
-    let tape = &mut half.tape;
-    let sizes = Sizes { heads: HEADS, features: FEATURES, ..model.sizes };
-    let descriptors = record_graph(tape, &graph, sizes, &layers, inputs, &potentials);
-    let shapes = record_mlp(tape, &blend, descriptors, n);
-    let change = record_mlp(tape, &weights, descriptors, n);
-    let mut total = tape.buffer(&vec![0.0; n * joints]);
-    tape.add(&initial, &change, &mut total);
-    (half, (shapes, total))
-}
-
-/// Position and normal at rest [n, 6], standardised; the same per mean edge length, whose differences are the edges' features.
-fn rest_features(model: &HostModel, setup: &Setup) -> (Vec<f32>, Vec<f32>) {
-    let rest = vertices(&setup.template);
-    let mesh = Mesh { positions: rest.clone(), triangles: setup.triangles.as_chunks::<3>().0.to_vec() };
-    let normals = numbers(&mesh.normals(&rest));
-    let pairs = || setup.template.as_chunks::<3>().0.iter().zip(normals.as_chunks::<3>().0);
-    let (mean, std, edge) = (model.reference.mean, model.reference.std, model.reference.edge_scale);
-    let centred = |position: &[f32; 3]| -> [f32; 3] { std::array::from_fn(|c| (position[c] - mean[c]) / std[c]) };
-    let inputs = pairs().flat_map(|(position, normal)| centred(position).into_iter().chain(*normal));
-    let potentials = pairs().flat_map(|(position, normal)| position.map(|x| x / edge).into_iter().chain(*normal));
-    (inputs.collect(), potentials.collect())
-}
-
-fn record_graph(
-    tape: &mut Tape,
-    graph: &Graph<IndexId>,
-    sizes: Sizes,
-    layers: &[Layer<Id>],
-    inputs: Id,
-    potentials: &Id,
-) -> Id {
-    let n = sizes.vertices;
-    let mut h = inputs;
-    for layer in layers {
-        let [mut projected, mut attended, mut output] =
-            [4 * FEATURES, FEATURES, FEATURES].map(|width| tape.buffer(&vec![0.0; n * width]));
-        tape.linear(&h, &layer.project, Activation::None, &mut projected);
-        tape.attend(graph, sizes, &mut projected, potentials, layer, &mut attended);
-        tape.gate(&attended, &projected, layer, &mut output);
-        h = output;
-    }
-    h
-}
-
-/// ReLU between the layers and none after the last.
-fn record_mlp(tape: &mut Tape, layers: &[Linear<Id>], input: Id, rows: usize) -> Id {
-    let mut x = input;
-    for (i, layer) in layers.iter().enumerate() {
-        let mut y = tape.buffer(&vec![0.0; rows * layer.outputs]);
-        let activation = if i + 1 == layers.len() { Activation::None } else { Activation::Relu };
-        tape.linear(&x, layer, activation, &mut y);
-        x = y;
-    }
-    x
-}
-
-fn upload_linear(tape: &mut Tape, layer: &Linear<Vec<f32>>) -> Linear<Id> {
-    let (weight, bias) = (tape.buffer(&layer.weight), tape.buffer(&layer.bias));
-    Linear { weight, bias, inputs: layer.inputs, outputs: layer.outputs }
-}
-
-fn upload_layer(tape: &mut Tape, layer: &Layer<Vec<f32>>) -> Layer<Id> {
-    Layer {
-        project: upload_linear(tape, &layer.project),
-        edge: tape.buffer(&layer.edge),
-        gate: tape.buffer(&layer.gate),
-        norm_weight: tape.buffer(&layer.norm_weight),
-        norm_bias: tape.buffer(&layer.norm_bias),
     }
 }
