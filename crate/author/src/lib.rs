@@ -14,6 +14,7 @@ pub mod render;
 pub mod report;
 pub mod rig;
 pub mod simulate;
+pub mod study;
 pub mod synthetic;
 pub mod train;
 

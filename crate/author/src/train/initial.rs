@@ -173,11 +173,11 @@ fn linear(inputs: usize, outputs: usize, rng: &mut fastrand::Rng) -> Linear<Vec<
     Linear { weight: uniform(inputs * outputs), bias: uniform(outputs), inputs, outputs }
 }
 
-fn mlp(sizes: &[usize], rng: &mut fastrand::Rng) -> Vec<Linear<Vec<f32>>> {
+pub(crate) fn mlp(sizes: &[usize], rng: &mut fastrand::Rng) -> Vec<Linear<Vec<f32>>> {
     sizes.windows(2).map(|pair| linear(pair[0], pair[1], rng)).collect()
 }
 
-fn layer(inputs: usize, features: usize, rng: &mut fastrand::Rng) -> Layer<Vec<f32>> {
+pub(crate) fn layer(inputs: usize, features: usize, rng: &mut fastrand::Rng) -> Layer<Vec<f32>> {
     Layer {
         project: linear(inputs, 4 * features, rng),
         edge: linear(6, features, rng).weight,

@@ -13,7 +13,7 @@ use ctsn_core::network::Activations;
 use ctsn_core::pose::BodyFrame;
 
 /// One sample as the tape sees it.
-pub(super) struct Item {
+pub(crate) struct Item {
     pub frame: BodyFrame,
     pub truth: Vec<f32>,
     /// What the skeleton stream learns.

@@ -1,16 +1,16 @@
 //! Training: the network's forward pass recorded on the [`Tape`], its gradients, Adam. network.md §6.
 //! Each step's batch is dealt in a fixed number of shares, summed in their order, so the result does not depend on threads.
 
-mod adam;
+pub(crate) mod adam;
 mod checkpoint;
 mod curve;
 mod fit;
 pub mod gradient;
 mod initial;
-mod item;
+pub(crate) mod item;
 mod slice;
 mod smooth;
-mod tape;
+pub(crate) mod tape;
 #[cfg(test)]
 mod tests;
 mod variant;
@@ -24,6 +24,7 @@ use ctsn_core::model::HostModel;
 use ctsn_core::network::{Activations, DeviceModel, Streams, forward};
 pub use fit::{End, Files, Row};
 pub use initial::{Architecture, initial};
+pub(crate) use initial::{layer, mlp};
 use item::Item;
 use rayon::prelude::*;
 pub use slice::{Slices, slices};
@@ -262,7 +263,7 @@ impl Trainer {
     }
 }
 
-fn upload(model: &HostModel, tape: &mut Tape) -> DeviceModel<Tape> {
+pub(crate) fn upload(model: &HostModel, tape: &mut Tape) -> DeviceModel<Tape> {
     let tape = std::cell::RefCell::new(tape);
     model.map(|values| tape.borrow_mut().buffer(values), |indices| tape.borrow_mut().indices(indices))
 }

@@ -180,6 +180,11 @@ impl Lane {
         &mut self.values[id.0]
     }
 
+    /// A gradient; empty where none is wanted.
+    pub fn gradient(&self, id: Id) -> &[f32] {
+        &self.gradients[self.slots[id.0]]
+    }
+
     /// A gradient, to be written; empty where none is wanted.
     pub fn gradient_mut(&mut self, id: Id) -> &mut Vec<f32> {
         &mut self.gradients[self.slots[id.0]]
