@@ -21,6 +21,7 @@ pub struct IndexId(usize);
 pub(super) enum Operation {
     Linear { x: Id, layer: Linear<Id>, activation: Activation, y: Id },
     Blend { weights: Id, basis: Id, rest: Id, residual: Id, template: Id },
+    Add { rest: Id, residual: Id, total: Id },
     Skin { rest: Id, skin: Skin<Id, IndexId>, transforms: Id, positions: Id },
     Features { v: Id, rest: Id, reference: Reference<Id, IndexId>, nodes: Id, potentials: Id },
     Attend { graph: usize, heads: usize, projected: Id, potentials: Id, edge: Id, attended: Id },
@@ -32,6 +33,7 @@ impl Operation {
         match self {
             Self::Linear { y, .. } => *y,
             Self::Blend { template, .. } => *template,
+            Self::Add { total, .. } => *total,
             Self::Skin { positions, .. } => *positions,
             Self::Features { nodes, .. } => *nodes,
             Self::Attend { attended, .. } => *attended,
@@ -44,6 +46,7 @@ impl Operation {
         match self {
             Self::Linear { x, .. } => vec![*x],
             Self::Blend { weights, .. } => vec![*weights],
+            Self::Add { residual, .. } => vec![*residual],
             Self::Skin { rest, .. } => vec![*rest],
             Self::Features { .. } => Vec::new(),
             Self::Attend { projected, .. } => vec![*projected],
@@ -201,6 +204,14 @@ impl Lane {
 
     pub(super) fn take_gradient(&mut self, id: Id) -> Vec<f32> {
         std::mem::take(&mut self.gradients[self.slots[id.0]])
+    }
+}
+
+impl Tape {
+    /// rest + residual -> total, of any shape. No operation of the network, but of the baselines it is compared with.
+    pub fn add(&mut self, rest: &Id, residual: &Id, total: &mut Id) {
+        let operation = Operation::Add { rest: *rest, residual: *residual, total: *total };
+        self.record(&[*residual], *total, operation);
     }
 }
 
