@@ -4,11 +4,12 @@ Python is needed for this comparison only:  pip install torch torch_geometric nu
     python scripts/train_step.py [--ctsn target/release/ctsn] [--vertices 4000 5000] [--rounds 5] [--threads 2]
 
 Both take the mesh, the sizes and the batch from the model file that `ctsn bench --write-model` leaves. Runs alternate, so that whatever
-else the machine does slows both; the ratio is the median over the rounds. PyTorch runs the batch both as one disjoint union of graphs
+else the machine does slows both; the ratio is the median over the rounds. On a busy machine, --cpu compares the processor time of one
+thread instead of the time that passes. PyTorch runs the batch both as one disjoint union of graphs
 and pose by pose, and the faster of the two counts.
 """
 
-import argparse, json, os, re, statistics, struct, subprocess, tempfile, time
+import argparse, json, os, re, resource, statistics, struct, subprocess, tempfile, time
 
 import numpy as np
 import torch
@@ -16,6 +17,7 @@ from torch import nn
 from torch_geometric.nn import TransformerConv
 
 BATCH = 8
+STEPS = 20
 
 
 def tensors(path):
@@ -103,15 +105,31 @@ def stepper(file, meta):
     return step, network.edges.shape[1], n
 
 
+def ours(bench, environment, cpu):
+    """Milliseconds per step of `ctsn bench --train`, which takes STEPS of them."""
+
+    def run(arguments):
+        start = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+        out = subprocess.run(arguments, check=True, capture_output=True, text=True, env=environment).stdout
+        return out, resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - start
+
+    out, seconds = run([*bench, "--train"])
+    if cpu:
+        return 1e3 * (seconds - run(bench)[1]) / STEPS
+    return float(re.search(r"training\s+([\d.]+) ms", out).group(1))
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--ctsn", default="target/release/ctsn")
     parser.add_argument("--vertices", type=int, nargs="+", default=[4000, 5000])
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--threads", type=int, default=2)
+    parser.add_argument("--cpu", action="store_true")
     arguments = parser.parse_args()
-    torch.set_num_threads(arguments.threads)
-    environment = {**os.environ, "RAYON_NUM_THREADS": str(arguments.threads)}
+    threads, clock = (1, time.process_time) if arguments.cpu else (arguments.threads, time.perf_counter)
+    torch.set_num_threads(threads)
+    environment = {**os.environ, "RAYON_NUM_THREADS": str(threads)}
     for vertices in arguments.vertices:
         bench = [arguments.ctsn, "bench", "--vertices", str(vertices), "--runs", "1"]
         with tempfile.TemporaryDirectory() as folder:
@@ -122,20 +140,18 @@ def main():
         for groups in (1, BATCH):
             step(groups)
         for _ in range(arguments.rounds):
-            out = subprocess.run([*bench, "--train"], check=True, capture_output=True, text=True, env=environment).stdout
-            ours = float(re.search(r"training\s+([\d.]+) ms", out).group(1))
-            times = {}
+            rust, times = ours(bench, environment, arguments.cpu), {}
             for groups in (1, BATCH):
                 samples = []
-                for _ in range(5):
-                    start = time.perf_counter()
+                for _ in range(3):
+                    start = clock()
                     step(groups)
-                    samples.append(1e3 * (time.perf_counter() - start))
+                    samples.append(1e3 * (clock() - start))
                 times[groups] = statistics.median(samples)
-            rounds.append((ours, times[1], times[BATCH], min(times.values()) / ours, os.getloadavg()[0]))
+            rounds.append((rust, times[1], times[BATCH], min(times.values()) / rust, os.getloadavg()[0]))
             print("n %d: ctsn %.1f ms, PyTorch as one %.1f ms, pose by pose %.1f ms, ratio %.2f (load %.1f)" % (n, *rounds[-1]), flush=True)
         medians = [statistics.median(column) for column in zip(*rounds)]
-        print("n %d, %d edges, %d threads, torch %s: medians ctsn %.1f ms, PyTorch as one %.1f ms, pose by pose %.1f ms; ratio %.2f" % (n, edges, arguments.threads, torch.__version__, *medians[:4]), flush=True)
+        print("n %d, %d edges, %d threads, torch %s: medians ctsn %.1f ms, PyTorch as one %.1f ms, pose by pose %.1f ms; ratio %.2f" % (n, edges, threads, torch.__version__, *medians[:4]), flush=True)
 
 
 if __name__ == "__main__":

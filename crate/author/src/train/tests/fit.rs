@@ -97,9 +97,11 @@ fn the_learning_rate_has_fallen_when_the_time_is_up() {
     let validation: Vec<&Sample> = validation.iter().collect();
     let folder = tempfile::tempdir().unwrap();
     assert!(matches!(trainer.fit(&validation, &files(&folder), |_, _| {}).unwrap(), End::Done));
-    let last = trainer.curve.last().unwrap();
-    assert!(trainer.epoch > 2, "{last:?}");
-    assert!(last.rate < 0.1 * trainer.settings.rate, "{last:?}");
+    assert!(trainer.seconds() > 0.9 * budget.as_secs_f64());
+    // The clock goes on between the rate and the seconds of a row, longer on a busy machine: the rate is never ahead of the time.
+    let due = |row: &Row| cosine(trainer.settings.rate, (row.seconds / budget.as_secs_f64()) as f32);
+    assert!(trainer.curve.iter().all(|row| row.rate >= due(row)), "{:?}", trainer.curve);
+    assert!(trainer.curve.windows(2).all(|pair| pair[1].rate < pair[0].rate), "{:?}", trainer.curve);
 }
 
 #[test]
