@@ -1,5 +1,6 @@
 //! Authoring: rigged character + garment + motion -> quasi-static simulation -> training -> evaluation -> model file.
 
+pub mod body;
 pub mod character;
 pub mod dataset;
 mod error;

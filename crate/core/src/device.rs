@@ -1,7 +1,9 @@
 //! What a device must be able to do: the operations of the network, and storage for their operands.
 //! An operation is the unit of fusion: each has a file of its name on every device, and a gradient of its name for training.
 
-use crate::model::{Layer, Linear, Reference, Sizes, Skin};
+use crate::model::{Body, Layer, Linear, Reference, Sizes, Skin};
+use crate::network::Drawn;
+use crate::pose::Rig;
 use crate::topology::Graph;
 
 /// What follows a linear layer.
@@ -36,12 +38,26 @@ pub trait Device {
     /// Replaces the content of `buffer` by `values` of the same length.
     fn write(&mut self, buffer: &mut Self::Buffer, values: &[f32]);
 
+    /// World joint transforms `G_j` [J, 3, 4] -> transforms `N·A_j`, then `N⁻¹` [J + 1, 3, 4], and pose vector γ [12J].
+    fn body_frame(
+        &mut self,
+        rig: &Rig,
+        joints: &Self::Buffer,
+        transforms: &mut Self::Buffer,
+        vector: &mut Self::Buffer,
+    );
     /// x [rows, inputs] -> y [rows, outputs], `y = act(W x + b)` row by row.
     fn linear(&mut self, x: &Self::Buffer, layer: &Linear<Self::Buffer>, activation: Activation, y: &mut Self::Buffer);
-    /// weights [count] (one for all) or [n, count], basis [n, 3, count] -> residual [n, 3], `Σ_j w_j B_j`.
-    fn blend(&mut self, weights: &Self::Buffer, basis: &Self::Buffer, residual: &mut Self::Buffer);
-    /// rest + residual -> template, [n, 3] each.
-    fn add(&mut self, rest: &Self::Buffer, residual: &Self::Buffer, template: &mut Self::Buffer);
+    /// weights [count] (one for all) or [n, count], basis [n, 3, count] -> residual [n, 3] = `Σ_j w_j B_j`,
+    /// template [n, 3] = rest + residual.
+    fn blend(
+        &mut self,
+        weights: &Self::Buffer,
+        basis: &Self::Buffer,
+        rest: &Self::Buffer,
+        residual: &mut Self::Buffer,
+        template: &mut Self::Buffer,
+    );
     /// Linear blend skinning: rest [n, 3], transforms [J + 1, 3, 4] -> positions [n, 3].
     fn skin(
         &mut self,
@@ -60,8 +76,9 @@ pub trait Device {
         nodes: &mut Self::Buffer,
         potentials: &mut Self::Buffer,
     );
-    /// projected [n, 4F] = q | k | v | r, potentials [n, 6] -> ĥ [n, F]: attention over the neighbours.
-    /// Leaves the edge term `U` in projected: q | k + U | v + U | r.
+    /// projected [n, 4F] = q | k | v | r, potentials [n, 6] -> ĥ [n, F]: attention over the neighbours; then
+    /// h [n, F] = ReLU(LayerNorm((1-β) ĥ + β r)). A device may leave the edge term in projected, or ĥ unwritten.
+    #[expect(clippy::too_many_arguments, reason = "an operation takes its operands plainly")]
     fn attend(
         &mut self,
         graph: &Graph<Self::Indices>,
@@ -70,15 +87,36 @@ pub trait Device {
         potentials: &Self::Buffer,
         layer: &Layer<Self::Buffer>,
         attended: &mut Self::Buffer,
-    );
-    /// ĥ [n, F], projected [n, 4F] -> h [n, F] = ReLU(LayerNorm((1-β) ĥ + β r)).
-    fn gate(
-        &mut self,
-        attended: &Self::Buffer,
-        projected: &Self::Buffer,
-        layer: &Layer<Self::Buffer>,
         output: &mut Self::Buffer,
     );
     /// positions [n, 3], triangles [t, 3] -> area-weighted unit normals [n, 3].
-    fn normals(&mut self, positions: &Self::Buffer, triangles: &Self::Indices, normals: &mut Self::Buffer);
+    fn normals(&mut self, positions: &Self::Buffer, triangles: &[u32], normals: &mut Self::Buffer);
+    /// The body's posed positions and normals [b, 3], cloth positions [n, 3] -> push [n, 3], the displacement that brings each cloth
+    /// vertex to the gap above the body; zero where there is room.
+    fn collide(
+        &mut self,
+        body: &Body<Self::Buffer, Self::Indices>,
+        posed: &Self::Buffer,
+        normals: &Self::Buffer,
+        positions: &Self::Buffer,
+        push: &mut Self::Buffer,
+    );
+    /// push [n, 3], displacement before [n, 3] -> after [n, 3]: follows the neighbours, and reaches at least the push.
+    fn spread(
+        &mut self,
+        graph: &Graph<Self::Indices>,
+        push: &Self::Buffer,
+        before: &Self::Buffer,
+        after: &mut Self::Buffer,
+    );
+    /// displacement [n, 3] is added to positions [n, 3].
+    fn lift(&mut self, displacement: &Self::Buffer, positions: &mut Self::Buffer);
+    /// Drawn vertex -> cloth vertex [d], positions and normals [n, 3] -> those of the drawn vertices [d, 3].
+    fn surface(
+        &mut self,
+        vertex: &[u32],
+        positions: &Self::Buffer,
+        normals: &Self::Buffer,
+        drawn: &mut Drawn<Self::Buffer>,
+    );
 }

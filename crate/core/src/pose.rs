@@ -1,5 +1,6 @@
-//! Joints -> body frame `N·A` and pose vector γ. network.md §1. Computed in f64: J matrices cost nothing.
+//! A skeleton as the network needs it, and the checks a pose must pass. network.md §1.
 
+use crate::cpu::body_frame::body_frame;
 use crate::{Error, Result};
 
 /// 3×4 transform, row-major.
@@ -51,14 +52,23 @@ impl Rig {
     /// Joint world transforms `G_j` [J, 3, 4], row-major, metres -> body frame and pose vector.
     pub fn body_frame(&self, joints: &[f32], out: &mut BodyFrame) -> Result<()> {
         self.check(joints, 12)?;
-        self.fill(|j| std::array::from_fn(|e| f64::from(joints[12 * j + e])), out);
+        body_frame(self, joints, &mut out.transforms, &mut out.vector);
+        Ok(())
+    }
+
+    /// The transforms of a pose [J, 3, 4], row-major, as the devices read them: checked and copied.
+    pub fn read(&self, joints: &[f32], out: &mut [f32]) -> Result<()> {
+        self.check(joints, 12)?;
+        out.copy_from_slice(joints);
         Ok(())
     }
 
     /// The same from 4×4 column-major matrices [J, 16], as three.js and glTF keep them.
-    pub fn body_frame_column_major(&self, joints: &[f32], out: &mut BodyFrame) -> Result<()> {
+    pub fn read_column_major(&self, joints: &[f32], out: &mut [f32]) -> Result<()> {
         self.check(joints, 16)?;
-        self.fill(|j| std::array::from_fn(|e| f64::from(joints[16 * j + e % 4 * 4 + e / 4])), out);
+        for (joint, out) in joints.as_chunks::<16>().0.iter().zip(out.as_chunks_mut::<12>().0) {
+            *out = std::array::from_fn(|e| joint[e % 4 * 4 + e / 4]);
+        }
         Ok(())
     }
 
@@ -72,35 +82,4 @@ impl Rig {
             None => Ok(()),
         }
     }
-
-    fn fill(&self, joint: impl Fn(usize) -> [f64; 12], out: &mut BodyFrame) {
-        let skinning = |j: usize| multiply(&joint(j), &self.inverse_bind[j].map(f64::from));
-        let (hip, a) = (joint(self.root), skinning(self.root));
-        let heading = match self.frame {
-            Frame::HipYaw => (a[2] - a[8]).atan2(a[0] + a[10]),
-            Frame::Hip => 0.0,
-        };
-        let (sin, cos) = heading.sin_cos();
-        let [x, y, z] = [hip[3], hip[7], hip[11]];
-        // N: translate by -p, then rotate by -ψ about +Y.
-        let into = [cos, 0.0, -sin, sin * z - cos * x, 0.0, 1.0, 0.0, -y, sin, 0.0, cos, -sin * x - cos * z];
-        let back = [cos, 0.0, sin, x, 0.0, 1.0, 0.0, y, -sin, 0.0, cos, z];
-        let (transforms, last) = out.transforms.split_at_mut(12 * self.joints.len());
-        for (j, transform) in transforms.as_chunks_mut::<12>().0.iter_mut().enumerate() {
-            *transform = multiply(&into, &skinning(j)).map(|value| value as f32);
-        }
-        last.copy_from_slice(&back.map(|value| value as f32));
-        for (i, value) in out.vector.iter_mut().enumerate() {
-            *value = (transforms[i] - self.mean[i]) / self.std[i];
-        }
-    }
-}
-
-/// Product of two 3×4 transforms.
-fn multiply(a: &[f64; 12], b: &[f64; 12]) -> [f64; 12] {
-    std::array::from_fn(|e| {
-        let (row, column) = (e / 4, e % 4);
-        let offset = if column == 3 { a[4 * row + 3] } else { 0.0 };
-        (0..3).map(|i| a[4 * row + i] * b[4 * i + column]).sum::<f64>() + offset
-    })
 }

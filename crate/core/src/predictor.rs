@@ -1,19 +1,17 @@
 //! A model ready to predict on the CPU: load once, then one call per frame without any allocation.
 
 use crate::cpu::{Cpu, Level};
-use crate::device::{Device, Space};
+use crate::device::Device;
 use crate::model::{HostModel, Sizes, Surface};
-use crate::network::{Activations, Streams, forward};
-use crate::pose::{BodyFrame, Rig, Transform};
+use crate::network::{Activations, Streams, frame};
+use crate::pose::{Rig, Transform};
 use crate::{Error, Result};
 
 /// A model on the CPU device with every buffer it needs.
 pub struct Predictor {
     device: Cpu,
     model: HostModel,
-    frame: BodyFrame,
     activations: Activations<Vec<f32>>,
-    normals: Vec<f32>,
 }
 
 impl Predictor {
@@ -25,9 +23,8 @@ impl Predictor {
     /// A model at a chosen SIMD level.
     pub fn from_model(model: HostModel, level: Level) -> Self {
         let mut device = Cpu::with_level(level);
-        let sizes = model.sizes;
-        let activations = Activations::new(&model, |length| device.buffer(&vec![0.0; length]));
-        Self { frame: BodyFrame::new(sizes.joints), normals: vec![0.0; sizes.vertices * 3], device, model, activations }
+        let activations = Activations::new(&model, |_, length| device.buffer(&vec![0.0; length]));
+        Self { device, model, activations }
     }
 
     /// Sizes of the network.
@@ -67,23 +64,20 @@ impl Predictor {
 
     /// Joint world matrices [J, 16], column-major as in three.js, metres -> positions and normals.
     pub fn predict(&mut self, joints: &[f32], streams: Streams) -> Result<()> {
-        self.model.rig.body_frame_column_major(joints, &mut self.frame)?;
+        self.model.rig.read_column_major(joints, &mut self.activations.joints)?;
         self.run(streams)
     }
 
     /// Joint world transforms [J, 3, 4], row-major, metres -> positions and normals.
     pub fn predict_row_major(&mut self, joints: &[f32], streams: Streams) -> Result<()> {
-        self.model.rig.body_frame(joints, &mut self.frame)?;
+        self.model.rig.read(joints, &mut self.activations.joints)?;
         self.run(streams)
     }
 
     /// Weights and poses may be finite and yet overflow together; what comes out is checked, so that NaN never leaves.
     fn run(&mut self, streams: Streams) -> Result<()> {
         let a = &mut self.activations;
-        self.device.write(&mut a.pose, &self.frame.vector);
-        self.device.write(&mut a.body_frame, &self.frame.transforms);
-        forward(&mut self.device, &self.model, streams, Space::World, a);
-        self.device.normals(&a.positions, &self.model.triangles, &mut self.normals);
+        frame(&mut self.device, &self.model, streams, a);
         match a.positions.iter().position(|value| !value.is_finite()) {
             Some(element) => {
                 Err(Error::NotFinite { what: "positions".to_owned(), element, found: a.positions[element] })
@@ -99,7 +93,17 @@ impl Predictor {
 
     /// Unit vertex normals [n, 3] of the predicted positions.
     pub fn normals(&self) -> &[f32] {
-        &self.normals
+        &self.activations.normals
+    }
+
+    /// Positions of the drawn vertices [d, 3]: of the surface where the model has one, of the cloth otherwise.
+    pub fn drawn_positions(&self) -> &[f32] {
+        self.activations.drawn.as_ref().map_or(self.positions(), |drawn| &drawn.positions)
+    }
+
+    /// Unit normals of the drawn vertices [d, 3].
+    pub fn drawn_normals(&self) -> &[f32] {
+        self.activations.drawn.as_ref().map_or(self.normals(), |drawn| &drawn.normals)
     }
 
     /// Every intermediate result of the last prediction.

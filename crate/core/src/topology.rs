@@ -35,7 +35,7 @@ impl Graph<Vec<u32>> {
 }
 
 impl<I> Graph<I> {
-    pub(crate) fn map<J>(&self, indices: &mut impl FnMut(&I) -> J) -> Graph<J> {
+    pub(crate) fn map<'a, J>(&'a self, indices: &mut impl FnMut(&'a I) -> J) -> Graph<J> {
         Graph { offsets: indices(&self.offsets), neighbours: indices(&self.neighbours) }
     }
 }

@@ -2,6 +2,7 @@
 
 use super::{Network, bar, file_name};
 use anyhow::{Context, Result, anyhow};
+use ctsn_author::body::body;
 use ctsn_author::dataset::{self, Dataset, Setup};
 use ctsn_author::train::{self, End, Files, Part, Row, Slices, Trainer, Variant};
 use ctsn_core::model::{HostModel, Storage};
@@ -81,7 +82,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         (End::Diverged(error), None) => Err(error.into()),
         (_, None) => Err(anyhow!("no epoch was trained: wanted at least one")),
         (end, Some((best, model))) => {
-            let bytes = arguments.settings.store(&dataset.setup, &slices, &trainer, &best, model);
+            let bytes = arguments.settings.store(&dataset.setup, &slices, &trainer, &best, model)?;
             dataset::write(&arguments.output, &bytes)?;
             std::fs::remove_file(&files.checkpoint).ok();
             println!("{name}: {} bytes, of epoch {}: {}", bytes.len(), best.epoch, errors(&best));
@@ -112,7 +113,14 @@ impl Settings {
     }
 
     /// The model file: the best epoch's model, and what it was trained on. Nothing in it depends on the hour.
-    fn store(&self, setup: &Setup, slices: &Slices, trainer: &Trainer, best: &Row, mut model: HostModel) -> Vec<u8> {
+    fn store(
+        &self,
+        setup: &Setup,
+        slices: &Slices,
+        trainer: &Trainer,
+        best: &Row,
+        mut model: HostModel,
+    ) -> Result<Vec<u8>> {
         let part = |part: &Part| format!("{part:?}").to_lowercase();
         let summary = serde_json::json!({
             "character": setup.description.character,
@@ -130,10 +138,11 @@ impl Settings {
             "ctsn": env!("CARGO_PKG_VERSION"),
         });
         model.training = Some(summary.to_string());
-        model.to_bytes(match self.storage {
+        model.body = Some(body(setup, &slices.train)?);
+        Ok(model.to_bytes(match self.storage {
             StorageArgument::F32 => Storage::F32,
             StorageArgument::F16 => Storage::F16,
-        })
+        }))
     }
 }
 

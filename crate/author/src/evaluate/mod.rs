@@ -78,6 +78,8 @@ pub struct Report {
     pub rejected: usize,
     /// The whole network.
     pub network: Errors,
+    /// The whole network before penetration is repaired; null where the model repairs nothing.
+    pub unrepaired: Option<Errors>,
     /// The skeleton stream alone.
     pub skeleton: Errors,
     /// Plain linear blend skinning with `W_C^I`.
@@ -126,6 +128,8 @@ pub fn evaluate(model: &HostModel, dataset: &Dataset, split: Split) -> Result<Re
     judge::check_same(model, dataset)?;
     let samples = unseen(dataset, split)?;
     let judge = Judge::new(&dataset.setup)?;
+    let bare = model.body.as_ref().map(|_| HostModel { body: None, ..model.clone() });
+    let unrepaired = bare.map(|bare| predictions(&bare, &judge, &samples, Streams::Both)).transpose()?;
     let run = |streams| Ok::<_, Error>(judge.run(&samples, predictions(model, &judge, &samples, streams)?));
     let (network, skinning) = (run(Streams::Both)?, run(Streams::None)?);
     let whole = |run: &Run| judge.errors(&samples, run, 0..samples.len());
@@ -138,6 +142,7 @@ pub fn evaluate(model: &HostModel, dataset: &Dataset, split: Split) -> Result<Re
         vertices: model.sizes.vertices,
         size: judge.size,
         rejected: dataset.rejected.len(),
+        unrepaired: unrepaired.map(|predictions| whole(&judge.run(&samples, predictions))),
         skeleton: whole(&run(Streams::Skeleton)?),
         truth: whole(&truth),
         ratio: whole(&network).distance.mean / whole(&skinning).distance.mean,

@@ -116,12 +116,14 @@ fn ways(report: &Report) -> Markup {
         (name.to_owned(), cells.map(Cell::Text).into())
     };
     let rows = [
-        ("network", &report.network),
-        ("skeleton stream alone", &report.skeleton),
-        ("plain skinning", &report.skinning),
-        ("simulation", &report.truth),
+        ("network", Some(&report.network)),
+        ("network, not repaired", report.unrepaired.as_ref()),
+        ("skeleton stream alone", Some(&report.skeleton)),
+        ("plain skinning", Some(&report.skinning)),
+        ("simulation", Some(&report.truth)),
     ];
-    table(&heads, &rows.map(row))
+    let rows: Vec<_> = rows.into_iter().filter_map(|(name, errors)| Some(row((name, errors?)))).collect();
+    table(&heads, &rows)
 }
 
 /// Share of the frames at or below an error, for the network and for plain skinning.

@@ -14,12 +14,13 @@ impl std::fmt::Display for Report {
             "", heads[0], heads[1], heads[2], heads[3], heads[4], heads[5], heads[6], heads[7]
         )?;
         let rows = [
-            ("network", &self.network),
-            ("skeleton stream", &self.skeleton),
-            ("plain skinning", &self.skinning),
-            ("simulation", &self.truth),
+            ("network", Some(&self.network)),
+            ("not repaired", self.unrepaired.as_ref()),
+            ("skeleton stream", Some(&self.skeleton)),
+            ("plain skinning", Some(&self.skinning)),
+            ("simulation", Some(&self.truth)),
         ];
-        for (name, errors) in rows {
+        for (name, errors) in rows.into_iter().filter_map(|(name, errors)| Some((name, errors?))) {
             let pair =
                 |statistic: Statistic, unit: f64| format!("{:.2} ± {:.2}", statistic.mean * unit, statistic.std * unit);
             let (distance, normal) = (pair(errors.distance, 1e3), pair(errors.normal, 1.0));

@@ -2,19 +2,20 @@
 //! A multiplication and an addition count one each, and so does every exponential, division and root.
 
 use ctsn_core::device::{Activation, Device, Space};
-use ctsn_core::model::{HostModel, Layer, Linear, Reference, Sizes, Skin};
-use ctsn_core::network::{Activations, Streams, forward};
+use ctsn_core::model::{Body, HostModel, Layer, Linear, Reference, Sizes, Skin};
+use ctsn_core::network::{Activations, Drawn, Streams, forward};
+use ctsn_core::pose::Rig;
 use ctsn_core::topology::Graph;
 
 /// Operations counted so far. A buffer is its length.
 #[derive(Default)]
 struct Count(usize);
 
-/// Floating-point operations of one prediction by `streams` of `model`, normals not counted.
+/// Floating-point operations of one prediction by `streams` of `model`; normals and the repair of penetration are not counted.
 pub fn flops(model: &HostModel, streams: Streams) -> usize {
     let mut count = Count::default();
     let lengths = model.map(Vec::len, Vec::len);
-    let mut activations = Activations::new(&lengths, |length| length);
+    let mut activations = Activations::new(&lengths, |_, length| length);
     forward(&mut count, &lengths, streams, Space::World, &mut activations);
     count.0
 }
@@ -39,12 +40,10 @@ impl Device for Count {
         self.0 += x / layer.inputs * layer.outputs * (2 * layer.inputs + 1);
     }
 
-    fn blend(&mut self, _: &usize, basis: &usize, _: &mut usize) {
-        self.0 += 2 * basis;
-    }
+    fn body_frame(&mut self, _: &Rig, _: &usize, _: &mut usize, _: &mut usize) {}
 
-    fn add(&mut self, rest: &usize, _: &usize, _: &mut usize) {
-        self.0 += rest;
+    fn blend(&mut self, _: &usize, basis: &usize, rest: &usize, _: &mut usize, _: &mut usize) {
+        self.0 += 2 * basis + rest;
     }
 
     fn skin(&mut self, rest: &usize, skin: &Skin<usize, usize>, _: &usize, space: Space, _: &mut usize) {
@@ -73,20 +72,26 @@ impl Device for Count {
         potentials: &usize,
         _: &Layer<usize>,
         attended: &mut usize,
+        _: &mut usize,
     ) {
         // The edge term U and its two additions; per edge the logits, their softmax and the weighted sum; U taken off again.
         let vertices = potentials / 6;
         let edges = graph.neighbours;
         let features = *attended / vertices;
         self.0 += vertices * features * (2 * 6 + 2) + edges * (4 * features + 4 * sizes.heads) + vertices * features;
+        // The gate: difference, three dot products, blend; LayerNorm: mean, variance, scale and shift.
+        self.0 += *attended * (1 + 6 + 2 + 7);
     }
 
-    fn gate(&mut self, attended: &usize, _: &usize, _: &Layer<usize>, _: &mut usize) {
-        // Difference, three dot products, blend; mean, variance, scale and shift.
-        self.0 += attended * (1 + 6 + 2 + 7);
-    }
+    fn normals(&mut self, _: &usize, _: &[u32], _: &mut usize) {}
 
-    fn normals(&mut self, _: &usize, _: &usize, _: &mut usize) {}
+    fn collide(&mut self, _: &Body<usize, usize>, _: &usize, _: &usize, _: &usize, _: &mut usize) {}
+
+    fn spread(&mut self, _: &Graph<usize>, _: &usize, _: &usize, _: &mut usize) {}
+
+    fn lift(&mut self, _: &usize, _: &mut usize) {}
+
+    fn surface(&mut self, _: &[u32], _: &usize, _: &usize, _: &mut Drawn<usize>) {}
 }
 
 #[cfg(test)]

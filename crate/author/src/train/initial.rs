@@ -67,6 +67,7 @@ pub fn initial(setup: &Setup, train: &[&Sample], architecture: Architecture, see
         vertex: mlp(&[features, VERTEX, basis], &mut rng),
         mesh: small(n * 3 * basis, &mut rng),
         surface: Some(setup.surface.clone()).filter(|surface| !surface.vertex.is_empty()),
+        body: None,
         training: None,
     })
 }

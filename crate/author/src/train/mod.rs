@@ -36,6 +36,9 @@ pub use variant::{Part, Variant};
 /// Shares a batch is dealt in.
 const SHARES: usize = 4;
 
+/// A gradient per parameter array.
+type Sums = Vec<Vec<f32>>;
+
 /// How to train.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
@@ -84,7 +87,7 @@ pub struct Trainer {
     /// A lane per thread.
     lanes: Vec<Lane>,
     /// Gradients of `parameters`, summed over the samples of each share of the batch.
-    sums: Vec<Vec<Vec<f32>>>,
+    sums: Vec<Sums>,
     curve: Vec<Row>,
     /// E_dist on the validation slice before the first epoch, metres.
     pub untrained: Option<f32>,
@@ -114,7 +117,7 @@ impl Trainer {
         let learns = |(i, id): (usize, &Id)| variant.learns(i).then_some(*id);
         let parameters: Vec<Id> = recorded.parameters().into_iter().enumerate().filter_map(learns).collect();
         let shared = tape.seal(&parameters.iter().collect::<Vec<_>>());
-        let mut activations = Activations::new(&model, |length| tape.buffer(&vec![0.0; length]));
+        let mut activations = Activations::new(&model, |_, length| tape.buffer(&vec![0.0; length]));
         let streams = if variant.mesh { Streams::Both } else { Streams::Skeleton };
         forward(&mut tape, &recorded, streams, Space::Body, &mut activations);
         let coarse = (variant.skeleton && variant.mesh).then(|| {
@@ -200,8 +203,8 @@ impl Trainer {
         let (tape, shared, items, parameters) = (&self.tape, &self.shared, &self.items, &self.parameters);
         let (activations, coarse, shares) = (&self.activations, self.coarse, self.sums.len());
         let each = shares.div_ceil(self.lanes.len());
-        let run = |(thread, (lane, sums)): (usize, (&mut Lane, &mut [Vec<Vec<f32>>]))| {
-            let share = |(number, sums): (usize, &mut Vec<Vec<f32>>)| {
+        let run = |(thread, (lane, sums)): (usize, (&mut Lane, &mut [Sums]))| {
+            let share = |(number, sums): (usize, &mut Sums)| {
                 sums.iter_mut().for_each(|sum| sum.fill(0.0));
                 lane.exchange(parameters, sums);
                 let mut loss = Loss::default();

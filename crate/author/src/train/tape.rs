@@ -4,7 +4,9 @@
 use super::gradient;
 use ctsn_core::cpu::Level;
 use ctsn_core::device::{Activation, Device, Space};
-use ctsn_core::model::{Layer, Linear, Reference, Sizes, Skin};
+use ctsn_core::model::{Body, Layer, Linear, Reference, Sizes, Skin};
+use ctsn_core::network::Drawn;
+use ctsn_core::pose::Rig;
 use ctsn_core::topology::Graph;
 
 /// A buffer of the tape.
@@ -18,8 +20,8 @@ pub struct IndexId(usize);
 /// One recorded operation with its operands.
 pub(super) enum Operation {
     Linear { x: Id, layer: Linear<Id>, activation: Activation, y: Id },
-    Blend { weights: Id, basis: Id, residual: Id },
-    Add { rest: Id, residual: Id, template: Id },
+    Blend { weights: Id, basis: Id, rest: Id, residual: Id, template: Id },
+    Add { rest: Id, residual: Id, total: Id },
     Skin { rest: Id, skin: Skin<Id, IndexId>, transforms: Id, positions: Id },
     Features { v: Id, rest: Id, reference: Reference<Id, IndexId>, nodes: Id, potentials: Id },
     Attend { graph: usize, heads: usize, projected: Id, potentials: Id, edge: Id, attended: Id },
@@ -30,8 +32,8 @@ impl Operation {
     fn output(&self) -> Id {
         match self {
             Self::Linear { y, .. } => *y,
-            Self::Blend { residual, .. } => *residual,
-            Self::Add { template, .. } => *template,
+            Self::Blend { template, .. } => *template,
+            Self::Add { total, .. } => *total,
             Self::Skin { positions, .. } => *positions,
             Self::Features { nodes, .. } => *nodes,
             Self::Attend { attended, .. } => *attended,
@@ -205,6 +207,14 @@ impl Lane {
     }
 }
 
+impl Tape {
+    /// rest + residual -> total, of any shape. No operation of the network, but of the baselines it is compared with.
+    pub fn add(&mut self, rest: &Id, residual: &Id, total: &mut Id) {
+        let operation = Operation::Add { rest: *rest, residual: *residual, total: *total };
+        self.record(&[*residual], *total, operation);
+    }
+}
+
 impl Device for Tape {
     type Buffer = Id;
     type Indices = IndexId;
@@ -233,14 +243,14 @@ impl Device for Tape {
         self.record(&[*x, layer.weight, layer.bias], *y, operation);
     }
 
-    fn blend(&mut self, weights: &Id, basis: &Id, residual: &mut Id) {
-        let operation = Operation::Blend { weights: *weights, basis: *basis, residual: *residual };
-        self.record(&[*weights, *basis], *residual, operation);
+    fn body_frame(&mut self, _rig: &Rig, _joints: &Id, _transforms: &mut Id, _vector: &mut Id) {
+        // Samples come in the body frame, so there is nothing to remember.
     }
 
-    fn add(&mut self, rest: &Id, residual: &Id, template: &mut Id) {
-        let operation = Operation::Add { rest: *rest, residual: *residual, template: *template };
-        self.record(&[*rest, *residual], *template, operation);
+    fn blend(&mut self, weights: &Id, basis: &Id, rest: &Id, residual: &mut Id, template: &mut Id) {
+        let (rest, residual, template) = (*rest, *residual, *template);
+        let operation = Operation::Blend { weights: *weights, basis: *basis, rest, residual, template };
+        self.record(&[*weights, *basis], template, operation);
     }
 
     fn skin(&mut self, rest: &Id, skin: &Skin<Id, IndexId>, transforms: &Id, _space: Space, positions: &mut Id) {
@@ -264,6 +274,7 @@ impl Device for Tape {
         potentials: &Id,
         layer: &Layer<Id>,
         attended: &mut Id,
+        output: &mut Id,
     ) {
         let [offsets, neighbours] = [graph.offsets, graph.neighbours].map(|id| self.indices[id.0].clone());
         self.graphs.push(Graph { offsets, neighbours });
@@ -276,15 +287,24 @@ impl Device for Tape {
             attended: *attended,
         };
         self.record(&[*projected, layer.edge], *attended, operation);
-    }
-
-    fn gate(&mut self, attended: &Id, projected: &Id, layer: &Layer<Id>, output: &mut Id) {
         let operation =
             Operation::Gate { attended: *attended, projected: *projected, layer: layer.clone(), output: *output };
         self.record(&[*attended, *projected], *output, operation);
     }
 
-    fn normals(&mut self, _positions: &Id, _triangles: &IndexId, _normals: &mut Id) {
+    fn normals(&mut self, _positions: &Id, _triangles: &[u32], _normals: &mut Id) {
         // Not part of the loss (network.md §6), so there is nothing to remember.
+    }
+
+    fn collide(&mut self, _: &Body<Id, IndexId>, _posed: &Id, _normals: &Id, _positions: &Id, _push: &mut Id) {
+        // Nor is repair.
+    }
+
+    fn spread(&mut self, _graph: &Graph<IndexId>, _push: &Id, _before: &Id, _after: &mut Id) {}
+
+    fn lift(&mut self, _displacement: &Id, _positions: &mut Id) {}
+
+    fn surface(&mut self, _vertex: &[u32], _positions: &Id, _normals: &Id, _drawn: &mut Drawn<Id>) {
+        // Nor is this.
     }
 }

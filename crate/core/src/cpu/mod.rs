@@ -1,19 +1,25 @@
 //! The CPU device: one file per operation, kernels generic over the SIMD level, dispatched once per call.
 //! The same source serves AVX2, NEON, wasm simd128 and the scalar level, which is the reference.
 
-pub mod add;
 pub mod attend;
 pub mod blend;
+pub mod body_frame;
+pub mod collide;
 pub mod exp;
 pub mod features;
 pub mod gate;
+pub mod lift;
 pub mod linear;
 pub mod normals;
 pub mod skin;
+pub mod spread;
+pub mod surface;
 pub mod vector;
 
 use crate::device::{Activation, Device, Space};
-use crate::model::{Layer, Linear, Reference, Sizes, Skin};
+use crate::model::{Body, Layer, Linear, Reference, Sizes, Skin};
+use crate::network::Drawn;
+use crate::pose::Rig;
 use crate::topology::Graph;
 pub use fearless_simd::Level;
 
@@ -57,16 +63,23 @@ impl Device for Cpu {
         buffer.copy_from_slice(values);
     }
 
+    fn body_frame(&mut self, rig: &Rig, joints: &Vec<f32>, transforms: &mut Vec<f32>, vector: &mut Vec<f32>) {
+        body_frame::body_frame(rig, joints, transforms, vector);
+    }
+
     fn linear(&mut self, x: &Vec<f32>, layer: &Linear<Vec<f32>>, activation: Activation, y: &mut Vec<f32>) {
         linear::linear(self.level, x, &layer.weight, &layer.bias, activation, y);
     }
 
-    fn blend(&mut self, weights: &Vec<f32>, basis: &Vec<f32>, residual: &mut Vec<f32>) {
-        blend::blend(self.level, weights, basis, residual);
-    }
-
-    fn add(&mut self, rest: &Vec<f32>, residual: &Vec<f32>, template: &mut Vec<f32>) {
-        add::add(rest, residual, template);
+    fn blend(
+        &mut self,
+        weights: &Vec<f32>,
+        basis: &Vec<f32>,
+        rest: &Vec<f32>,
+        residual: &mut Vec<f32>,
+        template: &mut Vec<f32>,
+    ) {
+        blend::blend(self.level, weights, basis, rest, residual, template);
     }
 
     fn skin(
@@ -99,15 +112,43 @@ impl Device for Cpu {
         potentials: &Vec<f32>,
         layer: &Layer<Vec<f32>>,
         attended: &mut Vec<f32>,
+        output: &mut Vec<f32>,
     ) {
         attend::attend(self.level, graph, sizes.heads, projected, potentials, &layer.edge, &mut self.scratch, attended);
-    }
-
-    fn gate(&mut self, attended: &Vec<f32>, projected: &Vec<f32>, layer: &Layer<Vec<f32>>, output: &mut Vec<f32>) {
         gate::gate(self.level, attended, projected, &layer.gate, &layer.norm_weight, &layer.norm_bias, output);
     }
 
-    fn normals(&mut self, positions: &Vec<f32>, triangles: &Vec<u32>, normals: &mut Vec<f32>) {
+    fn normals(&mut self, positions: &Vec<f32>, triangles: &[u32], normals: &mut Vec<f32>) {
         normals::normals(positions, triangles, normals);
+    }
+
+    fn collide(
+        &mut self,
+        body: &Body<Vec<f32>, Vec<u32>>,
+        posed: &Vec<f32>,
+        normals: &Vec<f32>,
+        positions: &Vec<f32>,
+        push: &mut Vec<f32>,
+    ) {
+        let posed = collide::Posed {
+            positions: posed.as_chunks().0,
+            normals: normals.as_chunks().0,
+            offsets: &body.fans.offsets,
+            fans: body.fans.corners.as_chunks().0,
+        };
+        collide::collide(positions, &posed, &body.seeds, push);
+    }
+
+    fn spread(&mut self, graph: &Graph<Vec<u32>>, push: &Vec<f32>, before: &Vec<f32>, after: &mut Vec<f32>) {
+        spread::spread(graph, push, before, after);
+    }
+
+    fn lift(&mut self, displacement: &Vec<f32>, positions: &mut Vec<f32>) {
+        lift::lift(displacement, positions);
+    }
+
+    fn surface(&mut self, vertex: &[u32], positions: &Vec<f32>, normals: &Vec<f32>, drawn: &mut Drawn<Vec<f32>>) {
+        surface::surface(vertex, positions, &mut drawn.positions);
+        surface::surface(vertex, normals, &mut drawn.normals);
     }
 }

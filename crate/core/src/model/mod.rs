@@ -1,11 +1,13 @@
 //! The model: every weight of the network, on any storage `B` (f32) and `I` (u32). network.md §8.
 //! The files of this folder are the only place that knows tensor names and shapes.
 
+mod body;
 mod read;
 mod write;
 
 use crate::pose::Rig;
 use crate::topology::Graph;
+pub use body::{Body, Fans};
 pub use write::Storage;
 
 /// A model on the host, as a file holds it.
@@ -122,24 +124,30 @@ pub struct Model<B, I> {
     pub mesh: B,
     /// What is drawn, when it differs from the cloth mesh.
     pub surface: Option<Surface>,
+    /// What the cloth is kept out of.
+    pub body: Option<Body<B, I>>,
     /// What the model was trained on: a JSON object, free in form.
     pub training: Option<String>,
 }
 
 impl<B> Linear<B> {
-    fn map<C>(&self, values: &mut impl FnMut(&B) -> C) -> Linear<C> {
+    fn map<'a, C>(&'a self, values: &mut impl FnMut(&'a B) -> C) -> Linear<C> {
         Linear { weight: values(&self.weight), bias: values(&self.bias), inputs: self.inputs, outputs: self.outputs }
     }
 }
 
 impl<B, I> Skin<B, I> {
-    fn map<C, J>(&self, values: &mut impl FnMut(&B) -> C, indices: &mut impl FnMut(&I) -> J) -> Skin<C, J> {
+    fn map<'a, C, J>(
+        &'a self,
+        values: &mut impl FnMut(&'a B) -> C,
+        indices: &mut impl FnMut(&'a I) -> J,
+    ) -> Skin<C, J> {
         Skin { joints: indices(&self.joints), weights: values(&self.weights), width: self.width }
     }
 }
 
 impl<B> Layer<B> {
-    fn map<C>(&self, values: &mut impl FnMut(&B) -> C) -> Layer<C> {
+    fn map<'a, C>(&'a self, values: &mut impl FnMut(&'a B) -> C) -> Layer<C> {
         Layer {
             project: self.project.map(values),
             edge: values(&self.edge),
@@ -152,7 +160,11 @@ impl<B> Layer<B> {
 
 impl<B, I> Model<B, I> {
     /// The same model on other storage: `values` and `indices` move one array each, in a fixed order.
-    pub fn map<C, J>(&self, mut values: impl FnMut(&B) -> C, mut indices: impl FnMut(&I) -> J) -> Model<C, J> {
+    pub fn map<'a, C, J>(
+        &'a self,
+        mut values: impl FnMut(&'a B) -> C,
+        mut indices: impl FnMut(&'a I) -> J,
+    ) -> Model<C, J> {
         let (values, indices) = (&mut values, &mut indices);
         Model {
             sizes: self.sizes,
@@ -174,6 +186,7 @@ impl<B, I> Model<B, I> {
             vertex: self.vertex.iter().map(|layer| layer.map(values)).collect(),
             mesh: values(&self.mesh),
             surface: self.surface.clone(),
+            body: self.body.as_ref().map(|body| body.map(values, indices)),
             training: self.training.clone(),
         }
     }

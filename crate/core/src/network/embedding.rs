@@ -11,8 +11,6 @@ pub(super) fn skeleton<D: Device>(device: &mut D, model: &DeviceModel<D>, a: &mu
         let x = before.last().unwrap_or(&a.pose);
         device.linear(x, layer, if last { Activation::None } else { Activation::Relu }, &mut after[0]);
     }
-    if let Some(embedding) = a.embedding.last() {
-        device.blend(embedding, &model.skeleton, &mut a.skeleton);
-    }
-    device.add(&model.rest, &a.skeleton, &mut a.coarse);
+    let embedding = a.embedding.last().unwrap_or(&a.pose);
+    device.blend(embedding, &model.skeleton, &model.rest, &mut a.skeleton, &mut a.coarse);
 }

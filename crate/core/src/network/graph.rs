@@ -3,7 +3,7 @@
 use super::{Activations, DeviceModel, LayerActivations};
 use crate::device::{Activation, Device, Space};
 
-/// Body frame -> Δ_M.
+/// Body frame and T_C + Δ_S -> Δ_M and T_C(γ).
 pub(super) fn mesh<D: Device>(device: &mut D, model: &DeviceModel<D>, a: &mut Activations<D::Buffer>) {
     let reference = &model.reference;
     device.skin(&reference.rest, &reference.skin, &a.body_frame, Space::Body, &mut a.reference);
@@ -13,8 +13,7 @@ pub(super) fn mesh<D: Device>(device: &mut D, model: &DeviceModel<D>, a: &mut Ac
         let h = before.last().map_or(&a.nodes, |layer| &layer.output);
         let LayerActivations { projected, attended, output } = &mut after[0];
         device.linear(h, &layer.project, Activation::None, projected);
-        device.attend(&model.graph, model.sizes, projected, &a.potentials, layer, attended);
-        device.gate(attended, projected, layer, output);
+        device.attend(&model.graph, model.sizes, projected, &a.potentials, layer, attended, output);
     }
     for (i, layer) in model.vertex.iter().enumerate() {
         let (before, after) = a.vertex.split_at_mut(i);
@@ -22,5 +21,5 @@ pub(super) fn mesh<D: Device>(device: &mut D, model: &DeviceModel<D>, a: &mut Ac
         device.linear(h, layer, Activation::Relu, &mut after[0]);
     }
     let weights = a.vertex.last().unwrap_or(&a.nodes);
-    device.blend(weights, &model.mesh, &mut a.mesh);
+    device.blend(weights, &model.mesh, &a.coarse, &mut a.mesh, &mut a.template);
 }

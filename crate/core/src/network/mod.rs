@@ -1,10 +1,12 @@
 //! The network, written once: the paper's figure as a function over any device. network.md §2–4.
 
+mod collide;
 mod embedding;
 mod graph;
 
 use crate::device::{Device, Space};
 use crate::model::Model;
+pub use collide::Collision;
 
 /// Which part of the network runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,6 +24,8 @@ pub type DeviceModel<D> = Model<<D as Device>::Buffer, <D as Device>::Indices>;
 
 /// Every intermediate result, named as the golden files name it. Allocated once.
 pub struct Activations<B> {
+    /// World joint transforms `G_j` [J, 3, 4].
+    pub joints: B,
     /// Pose vector γ [12J].
     pub pose: B,
     /// `N·A_j`, then `N⁻¹` [J + 1, 3, 4].
@@ -48,6 +52,20 @@ pub struct Activations<B> {
     pub template: B,
     /// Predicted positions [n, 3].
     pub positions: B,
+    /// What the repair of penetration computes, where the model has a body.
+    pub collision: Option<Collision<B>>,
+    /// Unit normals of the predicted positions [n, 3].
+    pub normals: B,
+    /// The same of the drawn vertices, where the model tells them apart from the cloth's.
+    pub drawn: Option<Drawn<B>>,
+}
+
+/// What is drawn: vertices split at seams.
+pub struct Drawn<B> {
+    /// Positions [d, 3].
+    pub positions: B,
+    /// Unit normals [d, 3].
+    pub normals: B,
 }
 
 /// Intermediate results of one graph layer.
@@ -61,29 +79,61 @@ pub struct LayerActivations<B> {
 }
 
 impl<B> Activations<B> {
-    /// Room for every result of `model`; `buffer(length)` makes one.
-    pub fn new<C, I>(model: &Model<C, I>, mut buffer: impl FnMut(usize) -> B) -> Self {
-        let (n, joints) = (model.sizes.vertices, model.sizes.joints);
-        let layer = |buffer: &mut dyn FnMut(usize) -> B, features: usize| LayerActivations {
-            projected: buffer(n * 4 * features),
-            attended: buffer(n * features),
-            output: buffer(n * features),
+    /// Room for every result of `model`; `buffer(stage, length)` makes one, for the stage that computes it.
+    pub fn new<C, I>(model: &Model<C, I>, mut buffer: impl FnMut(&str, usize) -> B) -> Self {
+        let (n, joints, features) = (model.sizes.vertices, model.sizes.joints, model.sizes.features);
+        let layer = |stage: &str, buffer: &mut dyn FnMut(&str, usize) -> B| LayerActivations {
+            projected: buffer(stage, n * 4 * features),
+            attended: buffer(stage, n * features),
+            output: buffer(stage, n * features),
         };
         Self {
-            pose: buffer(12 * joints),
-            body_frame: buffer(12 * (joints + 1)),
-            embedding: model.embedding.iter().map(|layer| buffer(layer.outputs)).collect(),
-            skeleton: buffer(n * 3),
-            reference: buffer(n * 3),
-            nodes: buffer(n * 3),
-            potentials: buffer(n * 6),
-            layers: model.layers.iter().map(|_| layer(&mut buffer, model.sizes.features)).collect(),
-            vertex: model.vertex.iter().map(|layer| buffer(n * layer.outputs)).collect(),
-            mesh: buffer(n * 3),
-            coarse: buffer(n * 3),
-            template: buffer(n * 3),
-            positions: buffer(n * 3),
+            joints: buffer("body_frame", 12 * joints),
+            pose: buffer("body_frame", 12 * joints),
+            body_frame: buffer("body_frame", 12 * (joints + 1)),
+            embedding: model.embedding.iter().map(|layer| buffer("embedding", layer.outputs)).collect(),
+            skeleton: buffer("skeleton", n * 3),
+            reference: buffer("reference", n * 3),
+            nodes: buffer("reference", n * 3),
+            potentials: buffer("reference", n * 6),
+            layers: (0..model.layers.len()).map(|l| layer(&format!("layer.{l}"), &mut buffer)).collect(),
+            vertex: model.vertex.iter().map(|layer| buffer("mesh", n * layer.outputs)).collect(),
+            mesh: buffer("mesh", n * 3),
+            coarse: buffer("skeleton", n * 3),
+            template: buffer("template", n * 3),
+            positions: buffer("positions", n * 3),
+            collision: model.body.as_ref().map(|body| Collision::new(body.vertices, n, &mut buffer)),
+            normals: buffer("normals", n * 3),
+            drawn: model.surface.as_ref().filter(|surface| !surface.vertex.is_empty()).map(|surface| Drawn {
+                positions: buffer("surface", surface.vertex.len() * 3),
+                normals: buffer("surface", surface.vertex.len() * 3),
+            }),
         }
+    }
+
+    /// What each stage hands on, under the stage's name.
+    pub fn stages(&self) -> Vec<(String, &B)> {
+        let layers = self.layers.iter().enumerate().map(|(l, layer)| (format!("layer.{l}"), &layer.output));
+        let mut stages = vec![("body_frame".to_owned(), &self.body_frame)];
+        stages.extend(self.embedding.last().map(|embedding| ("embedding".to_owned(), embedding)));
+        stages.extend([("skeleton".to_owned(), &self.skeleton), ("reference".to_owned(), &self.reference)]);
+        stages.extend(layers);
+        let last = [("mesh", &self.mesh), ("template", &self.template), ("positions", &self.positions)];
+        stages.extend(last.map(|(name, buffer)| (name.to_owned(), buffer)));
+        stages
+    }
+}
+
+/// The whole frame: joints (written before) -> positions in the world, their normals, and what is drawn.
+pub fn frame<D: Device>(device: &mut D, model: &DeviceModel<D>, streams: Streams, a: &mut Activations<D::Buffer>) {
+    device.body_frame(&model.rig, &a.joints, &mut a.body_frame, &mut a.pose);
+    forward(device, model, streams, Space::World, a);
+    if streams == Streams::Both {
+        collide::collide(device, model, a);
+    }
+    device.normals(&a.positions, &model.triangles, &mut a.normals);
+    if let (Some(surface), Some(drawn)) = (&model.surface, &mut a.drawn) {
+        device.surface(&surface.vertex, &a.positions, &a.normals, drawn);
     }
 }
 
@@ -103,6 +153,5 @@ pub fn forward<D: Device>(
         return device.skin(&a.coarse, &model.skin, &a.body_frame, space, &mut a.positions);
     }
     graph::mesh(device, model, a);
-    device.add(&a.coarse, &a.mesh, &mut a.template);
     device.skin(&a.template, &model.skin, &a.body_frame, space, &mut a.positions);
 }

@@ -96,8 +96,7 @@ fn record_graph(
         let [mut projected, mut attended, mut output] =
             [4 * FEATURES, FEATURES, FEATURES].map(|width| tape.buffer(&vec![0.0; n * width]));
         tape.linear(&h, &layer.project, Activation::None, &mut projected);
-        tape.attend(graph, sizes, &mut projected, potentials, layer, &mut attended);
-        tape.gate(&attended, &projected, layer, &mut output);
+        tape.attend(graph, sizes, &mut projected, potentials, layer, &mut attended, &mut output);
         h = output;
     }
     h

@@ -99,7 +99,7 @@ impl Deepsd {
         let mut parameters = vec![recorded.skeleton, recorded.skin.weights];
         parameters.extend(recorded.embedding.iter().flat_map(|layer| [layer.weight, layer.bias]));
         let mut pose = Half::new(tape, parameters);
-        let mut activations = Activations::new(&model, |length| pose.tape.buffer(&vec![0.0; length]));
+        let mut activations = Activations::new(&model, |_, length| pose.tape.buffer(&vec![0.0; length]));
         forward(&mut pose.tape, &recorded, Streams::Skeleton, Space::Body, &mut activations);
         let lanes = (0..LANES.min(settings.batch)).map(|_| pose.tape.lane(&pose.shared)).collect();
         let garment_lane = garment.tape.lane(&garment.shared);

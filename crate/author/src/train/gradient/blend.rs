@@ -1,4 +1,4 @@
-//! `Δ[i] = Σ_j w_j B_j[i]`: `dw_j = Σ_i g_i · B_j[i]`, `dB_j[i] = w_j g_i`.
+//! `T[i] = rest[i] + Σ_j w_j B_j[i]`: `dw_j = Σ_i g_i · B_j[i]`, `dB_j[i] = w_j g_i`.
 //! A basis that does not learn is zero (an ablation), and with it dw.
 
 use ctsn_core::cpu::Level;

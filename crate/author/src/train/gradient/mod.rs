@@ -2,7 +2,6 @@
 //! Convention: every activation is read by one operation that learns, so its gradient is overwritten; a parameter's is added to, over
 //! the samples of a lane.
 
-pub mod add;
 pub mod attend;
 pub mod blend;
 pub mod distance;
@@ -30,11 +29,15 @@ pub(super) fn run(tape: &Tape, operation: &Operation, shared: &Shared, lane: &mu
             let value = |id| lane.value(shared, id);
             cpu::linear::linear(level, value(*x), value(layer.weight), value(layer.bias), *activation, y);
         }),
-        Operation::Blend { weights, basis, residual } => lane.write(*residual, |lane, residual| {
-            cpu::blend::blend(level, lane.value(shared, *weights), lane.value(shared, *basis), residual);
+        Operation::Blend { weights, basis, rest, residual, template } => lane.write(*residual, |lane, residual| {
+            lane.write(*template, |lane, template| {
+                let value = |id| lane.value(shared, id);
+                cpu::blend::blend(level, value(*weights), value(*basis), value(*rest), residual, template);
+            });
         }),
-        Operation::Add { rest, residual, template } => lane.write(*template, |lane, template| {
-            cpu::add::add(lane.value(shared, *rest), lane.value(shared, *residual), template);
+        Operation::Add { rest, residual, total } => lane.write(*total, |lane, total| {
+            total.copy_from_slice(lane.value(shared, *rest));
+            cpu::lift::lift(lane.value(shared, *residual), total);
         }),
         Operation::Skin { rest, skin, transforms, positions } => lane.write(*positions, |lane, positions| {
             let value = |id| lane.value(shared, id);
@@ -87,14 +90,15 @@ pub(super) fn backward(tape: &Tape, operation: &Operation, shared: &Shared, lane
                 linear::linear(lane.value(shared, *x), lane.value(shared, layer.weight), dy, dx, dweight, dbias);
             });
         }
-        Operation::Blend { weights, basis, residual } => {
-            lane.add_to(*residual, [*weights, *basis], |lane, g, [dweights, dbasis]| {
+        // The rest learns elsewhere or not at all: network.md §6.
+        Operation::Blend { weights, basis, template, .. } => {
+            lane.add_to(*template, [*weights, *basis], |lane, g, [dweights, dbasis]| {
                 let (weights, basis) = (lane.value(shared, *weights), lane.value(shared, *basis));
                 blend::blend(lane.level, weights, basis, g, dweights, dbasis);
             });
         }
-        Operation::Add { residual, template, .. } => {
-            lane.add_to(*template, [*residual], |_, g, [dresidual]| add::add(g, dresidual));
+        Operation::Add { residual, total, .. } => {
+            lane.add_to(*total, [*residual], |_, g, [dresidual]| dresidual.copy_from_slice(g));
         }
         Operation::Skin { rest, skin, transforms, positions } => {
             lane.add_to(*positions, [*rest, skin.weights], |lane, g, [drest, dweights]| {

@@ -80,14 +80,13 @@ fn linear() {
 
 #[test]
 fn blend() {
-    check_operation(&[6, 5 * 3 * 6], 0, 15, |tape, ids, y| tape.blend(&ids[0], &ids[1], y));
-    check_operation(&[5 * 6, 5 * 3 * 6], 0, 15, |tape, ids, y| tape.blend(&ids[0], &ids[1], y));
-}
-
-/// The rest is constant to the gradient by design: network.md §6.
-#[test]
-fn add() {
-    check_operation(&[15, 15], 1, 15, |tape, ids, y| tape.add(&ids[1], &ids[0], y));
+    for weights in [6, 5 * 6] {
+        // The rest is constant to the gradient by design: network.md §6.
+        check_operation(&[weights, 5 * 3 * 6, 15], 1, 15, |tape, ids, y| {
+            let mut residual = tape.buffer(&[0.0; 15]);
+            tape.blend(&ids[0], &ids[1], &ids[2], &mut residual, y);
+        });
+    }
 }
 
 #[test]
@@ -101,20 +100,17 @@ fn skin() {
 #[test]
 fn attend() {
     let sizes = Sizes { vertices: 5, joints: 3, embedding: 4, basis: 6, features: 8, heads: 2 };
-    check_operation(&[5 * 32, 6 * 8, 5 * 6, 5 * 32], 2, 5 * 8, |tape, ids, y| {
+    let lengths = [5 * 4, 4 * 32, 32, 6 * 8, 24, 8, 8, 5 * 6];
+    check_operation(&lengths, 1, 5 * 8, |tape, ids, y| {
         let graph = strip();
         let graph = Graph { offsets: tape.indices(&graph.offsets), neighbours: tape.indices(&graph.neighbours) };
         // Attention changes its input, so that must be an activation.
         let mut projected = tape.buffer(&[0.0; 5 * 32]);
-        tape.add(&ids[3], &ids[0], &mut projected);
-        tape.attend(&graph, sizes, &mut projected, &ids[2], &layer(ids[1], ids[1], ids[1], ids[1]), y);
-    });
-}
-
-#[test]
-fn gate() {
-    check_operation(&[5 * 8, 5 * 32, 24, 8, 8], 0, 5 * 8, |tape, ids, y| {
-        tape.gate(&ids[0], &ids[1], &layer(ids[2], ids[2], ids[3], ids[4]), y);
+        let project = Linear { weight: ids[1], bias: ids[2], inputs: 4, outputs: 32 };
+        tape.linear(&ids[0], &project, Activation::None, &mut projected);
+        let mut attended = tape.buffer(&[0.0; 5 * 8]);
+        let layer = layer(ids[3], ids[4], ids[5], ids[6]);
+        tape.attend(&graph, sizes, &mut projected, &ids[7], &layer, &mut attended, y);
     });
 }
 

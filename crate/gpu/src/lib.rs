@@ -1,0 +1,22 @@
+//! ctsn-gpu: the forward pass of `ctsn_core::network`, recorded once as WGSL dispatches and replayed each frame, by wgpu:
+//! WebGPU in the browser, Vulkan natively.
+//!
+//! [`Gpu`] (a device, ours or lent) -> [`Model`] (weights and recorded frames, shared) -> [`Predictor`] (one cloth).
+
+mod cost;
+mod error;
+mod gpu;
+mod model;
+mod pack;
+mod predictor;
+mod read;
+mod recorder;
+mod recording;
+mod timestamps;
+
+pub use cost::{Cost, Stage};
+pub use error::{Error, Result};
+pub use gpu::Gpu;
+pub use model::Model;
+pub use predictor::{Prediction, Predictor};
+pub use wgpu;

@@ -1,0 +1,105 @@
+//! A model on a GPU: its constants, uploaded once, and the recorded frames. Shared by all predictors of the model.
+
+use crate::cost::{Stage, stages};
+use crate::recorder::Recorder;
+use crate::recording::{Dispatch, Room};
+use crate::{Gpu, Result};
+use ctsn_core::Streams;
+use ctsn_core::model::{HostModel, Sizes};
+use ctsn_core::network::{Activations, frame};
+use ctsn_core::pose::Rig;
+use std::cell::RefCell;
+use std::sync::Arc;
+
+/// A model on a GPU; clones share it. Dropping the last one, predictors included, frees its memory.
+#[derive(Clone)]
+pub struct Model(pub(crate) Arc<Inner>);
+
+pub(crate) struct Inner {
+    pub gpu: Gpu,
+    pub sizes: Sizes,
+    pub rig: Rig,
+    pub constants: Vec<wgpu::Buffer>,
+    pub rooms: Vec<Room>,
+    /// Frames by streams: both, skeleton, none.
+    pub frames: [Vec<Dispatch>; 3],
+    /// Rooms of what is written and read from outside.
+    pub joints: usize,
+    pub positions: usize,
+    pub normals: usize,
+    /// Positions and normals of what is drawn: the cloth's own where the model has no surface.
+    pub drawn: [usize; 2],
+    /// Rooms of the stages' results, by name.
+    pub results: Vec<(String, usize)>,
+}
+
+impl Model {
+    /// Uploads `model` and records its frames. Compiles every shader it needs.
+    ///
+    /// # Errors
+    /// [`crate::Error::Limit`], [`crate::Error::OutOfMemory`], [`crate::Error::Lost`].
+    pub async fn new(gpu: &Gpu, model: &HostModel) -> Result<Self> {
+        gpu.scoped(|| record(gpu, model)).await
+    }
+
+    /// The device it is on.
+    pub fn gpu(&self) -> &Gpu {
+        &self.0.gpu
+    }
+
+    /// Sizes of the network.
+    pub fn sizes(&self) -> Sizes {
+        self.0.sizes
+    }
+
+    /// Joints, inverse bind transforms and body frame.
+    pub fn rig(&self) -> &Rig {
+        &self.0.rig
+    }
+
+    /// Stages of a frame, in order, with their dispatches and least work.
+    pub fn stages(&self, streams: Streams) -> Vec<Stage> {
+        stages(self.0.frame(streams)).0
+    }
+}
+
+fn record(gpu: &Gpu, model: &HostModel) -> Result<Model> {
+    let recorder = RefCell::new(Recorder::new(gpu));
+    let recorded =
+        model.map(|values| recorder.borrow_mut().constant(values), |indices| recorder.borrow_mut().index(indices));
+    let mut recorder = recorder.into_inner();
+    let mut a = Activations::new(model, |stage, length| recorder.activation(stage, length));
+    let mut one = |streams| {
+        frame(&mut recorder, &recorded, streams, &mut a);
+        recorder.take()
+    };
+    let frames = [one(Streams::Both)?, one(Streams::Skeleton)?, one(Streams::None)?];
+    for dispatch in frames.iter().flatten() {
+        gpu.pipeline(dispatch.shader, dispatch.room);
+    }
+    let room = |id| recorder.room(id).unwrap_or_else(|| unreachable!("every frame writes it"));
+    let (joints, positions, normals) = (room(a.joints), room(a.positions), room(a.normals));
+    let drawn = a.drawn.as_ref().map_or([positions, normals], |drawn| [room(drawn.positions), room(drawn.normals)]);
+    let results = a.stages().into_iter().map(|(name, id)| (name, room(*id))).collect();
+    let Recorder { constants, rooms, .. } = recorder;
+    let (gpu, sizes, rig) = (gpu.clone(), model.sizes, model.rig.clone());
+    Ok(Model(Arc::new(Inner { gpu, sizes, rig, constants, rooms, frames, joints, positions, normals, drawn, results })))
+}
+
+impl Inner {
+    pub fn frame(&self, streams: Streams) -> &[Dispatch] {
+        match streams {
+            Streams::Both => &self.frames[0],
+            Streams::Skeleton => &self.frames[1],
+            Streams::None => &self.frames[2],
+        }
+    }
+}
+
+impl Drop for Inner {
+    fn drop(&mut self) {
+        // In a browser dropping alone frees nothing.
+        self.constants.iter().for_each(wgpu::Buffer::destroy);
+        self.frames.iter().flatten().for_each(|dispatch| dispatch.params.destroy());
+    }
+}
