@@ -74,11 +74,11 @@ impl Grid {
                 heads,
                 rows: pairs().map(plain).collect(),
             },
-            Table::Front => Self::front(entries, outcomes),
+            Table::Front => Self::front(entries, outcomes, validation),
         }
     }
 
-    fn front(entries: &[Entry], outcomes: &[Outcome]) -> Self {
+    fn front(entries: &[Entry], outcomes: &[Outcome], validation: usize) -> Self {
         let points = points(outcomes);
         let (front, chosen) = (front(&points), recommended(&points));
         let row = |(i, (entry, outcome)): (usize, (&Entry, &Outcome))| {
@@ -97,7 +97,7 @@ impl Grid {
         let told = chosen.map(|i| format!("Recommended: {}: the cheapest within 2 % of the least.", entries[i].title));
         Self {
             title: "Error against arithmetic",
-            note: format!("By the error on the validation poses. {}", told.unwrap_or_default()),
+            note: format!("By the error on the {validation} validation poses. {}", told.unwrap_or_default()),
             heads: vec!["", "Mflop", "MB", "E_dist, validation, mm", "E_dist, unseen, mm", "front"],
             rows,
         }
