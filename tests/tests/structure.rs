@@ -86,8 +86,10 @@ fn the_model_alone_knows_tensor_names() {
     for known in ["\"cloth.rest\"", "\"skeleton.basis\"", "\"pose.std\"", "\"reference.index\"", "\"draw.uv\""] {
         assert!(names.iter().any(|name| name == known), "{known} is no longer found in model/");
     }
-    // A dataset's setup is a file of its own, whose names are its own, though cloth and drawing are called alike.
+    // A dataset's setup is a file of its own, whose names are its own, though cloth, body and drawing are called alike.
     let shared = ["\"cloth.rest\"", "\"cloth.triangles\"", "\"draw.vertex\"", "\"draw.uv\"", "\"draw.triangles\""];
+    let body = ["\"body.rest\"", "\"body.triangles\"", "\"body.weights\""];
+    let shared = [&shared[..], &body].concat();
     let elsewhere = |source: &&Source| source.is_product() && !source.path.starts_with("crate/core/src/model/");
     for source in tree.iter().filter(elsewhere) {
         let known: &[&str] = if source.path == "crate/author/src/dataset.rs" { &shared } else { &[] };
@@ -119,7 +121,7 @@ fn every_operation_has_its_twins() {
     for operation in &operations {
         assert!(has(&format!("crate/core/src/cpu/{operation}.rs")), "{operation} has no file in crate/core/src/cpu");
         let gradient = has(&format!("crate/author/src/train/gradient/{operation}.rs"));
-        let wanted = !["body_frame", "features", "normals", "surface"].contains(operation);
+        let wanted = !["body_frame", "features", "normals", "collide", "spread", "lift", "surface"].contains(operation);
         assert_eq!(gradient, wanted, "{operation}: a file in crate/author/src/train/gradient");
         assert!(has(&format!("shaders/{operation}.wgsl")), "{operation} has no shader");
     }

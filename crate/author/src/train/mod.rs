@@ -8,6 +8,7 @@ mod fit;
 pub mod gradient;
 mod initial;
 pub(crate) mod item;
+mod operation;
 mod slice;
 mod smooth;
 pub(crate) mod tape;

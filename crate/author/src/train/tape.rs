@@ -2,6 +2,7 @@
 //! Recorded once per model and shared by all lanes: a [`Lane`] holds the values and gradients of one sample.
 
 use super::gradient;
+use super::operation::Operation;
 use ctsn_core::cpu::Level;
 use ctsn_core::device::{Activation, Device, Space};
 use ctsn_core::model::{Body, Layer, Linear, Reference, Sizes, Skin};
@@ -16,44 +17,6 @@ pub struct Id(usize);
 /// Constant indices of the tape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct IndexId(usize);
-
-/// One recorded operation with its operands.
-pub(super) enum Operation {
-    Linear { x: Id, layer: Linear<Id>, activation: Activation, y: Id },
-    Blend { weights: Id, basis: Id, rest: Id, residual: Id, template: Id },
-    Add { rest: Id, residual: Id, total: Id },
-    Skin { rest: Id, skin: Skin<Id, IndexId>, transforms: Id, positions: Id },
-    Features { v: Id, rest: Id, reference: Reference<Id, IndexId>, nodes: Id, potentials: Id },
-    Attend { graph: usize, heads: usize, projected: Id, potentials: Id, edge: Id, attended: Id },
-    Gate { attended: Id, projected: Id, layer: Layer<Id>, output: Id },
-}
-
-impl Operation {
-    fn output(&self) -> Id {
-        match self {
-            Self::Linear { y, .. } => *y,
-            Self::Blend { template, .. } => *template,
-            Self::Add { total, .. } => *total,
-            Self::Skin { positions, .. } => *positions,
-            Self::Features { nodes, .. } => *nodes,
-            Self::Attend { attended, .. } => *attended,
-            Self::Gate { output, .. } => *output,
-        }
-    }
-
-    /// The inputs that the operation's gradient writes to.
-    fn learns_from(&self) -> Vec<Id> {
-        match self {
-            Self::Linear { x, .. } => vec![*x],
-            Self::Blend { weights, .. } => vec![*weights],
-            Self::Add { residual, .. } => vec![*residual],
-            Self::Skin { rest, .. } => vec![*rest],
-            Self::Features { .. } => Vec::new(),
-            Self::Attend { projected, .. } => vec![*projected],
-            Self::Gate { attended, projected, .. } => vec![*attended, *projected],
-        }
-    }
-}
 
 /// The recorded forward pass.
 #[derive(Default)]

@@ -73,9 +73,9 @@ impl Posed<'_> {
     fn closest(&self, point: Vec3, vertex: u32) -> Option<(Vec3, Vec3)> {
         let mut best = f32::INFINITY;
         let mut found = None;
-        for [b, c] in self.fan(vertex) {
-            let corners = [vertex, *b, *c];
-            let [a, b, c] = corners.map(|corner| self.position(corner));
+        let a = self.position(vertex);
+        for corners in self.fan(vertex) {
+            let [b, c] = corners.map(|corner| self.position(corner));
             let shares = closest_on_triangle(point, a, b, c);
             let foot = a * shares.x + b * shares.y + c * shares.z;
             let squared = point.distance_squared(foot);
@@ -84,8 +84,8 @@ impl Posed<'_> {
                 found = Some((foot, shares, corners));
             }
         }
-        let (foot, shares, corners) = found?;
-        let [a, b, c] = corners.map(|corner| Vec3::from_array(self.normals[corner as usize]));
+        let (foot, shares, [b, c]) = found?;
+        let [a, b, c] = [vertex, *b, *c].map(|corner| Vec3::from_array(self.normals[corner as usize]));
         // Opposite normals: a body folded onto itself has no outside there.
         Some((foot, (a * shares.x + b * shares.y + c * shares.z).try_normalize()?))
     }

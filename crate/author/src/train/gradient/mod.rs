@@ -9,7 +9,8 @@ pub mod gate;
 pub mod linear;
 pub mod skin;
 
-use super::tape::{Id, Lane, Operation, Shared, Tape};
+use super::operation::Operation;
+use super::tape::{Id, Lane, Shared, Tape};
 use ctsn_core::cpu;
 use ctsn_core::device::{Activation, Space};
 use ctsn_core::model::Reference;

@@ -1,0 +1,173 @@
+//! Penetration repair: what is inside a body comes out, what is outside stays, and no body makes NaN; the GPU agrees.
+
+use ctsn_core::cpu::{Level, collide::GAP};
+use ctsn_core::model::{Body, Fans, HostModel, Skin};
+use ctsn_core::topology::Graph;
+use ctsn_core::{Predictor, Streams};
+use ctsn_tests::random::{self, Shape};
+use fastrand::Rng;
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen_test::{wasm_bindgen_test as test, wasm_bindgen_test_configure};
+
+#[cfg(target_arch = "wasm32")]
+wasm_bindgen_test_configure!(run_in_browser);
+
+/// Radius of the body, metres.
+const RADIUS: f32 = 0.05;
+/// Vertices around and from pole to pole.
+const AROUND: u32 = 24;
+const RINGS: u32 = 13;
+
+/// A sphere as a closed mesh: positions [b, 3], triangles.
+fn sphere() -> (Vec<f32>, Vec<u32>) {
+    let ring = |row: u32| {
+        let polar = std::f32::consts::PI * row as f32 / RINGS as f32;
+        (0..AROUND).flat_map(move |i| {
+            let angle = std::f32::consts::TAU * i as f32 / AROUND as f32;
+            [polar.sin() * angle.cos(), polar.cos(), polar.sin() * angle.sin()].map(|c| c * RADIUS)
+        })
+    };
+    let mut positions = vec![0.0, RADIUS, 0.0, 0.0, -RADIUS, 0.0];
+    positions.extend((1..RINGS).flat_map(ring));
+    let at = |row: u32, i: u32| 2 + (row - 1) * AROUND + i % AROUND;
+    let mut triangles = Vec::new();
+    for i in 0..AROUND {
+        triangles.extend([0, at(1, i + 1), at(1, i), 1, at(RINGS - 1, i), at(RINGS - 1, i + 1)]);
+        for row in 1..RINGS - 1 {
+            let [a, b, c, d] = [at(row, i), at(row, i + 1), at(row + 1, i), at(row + 1, i + 1)];
+            triangles.extend([a, b, c, b, d, c]);
+        }
+    }
+    (positions, triangles)
+}
+
+/// A cloth of loose points, `places` [n, 3], that follows one joint with a body of these positions and triangles.
+fn model(rng: &mut Rng, places: Vec<f32>, positions: Vec<f32>, triangles: Vec<u32>) -> HostModel {
+    let n = places.len() / 3;
+    let shape = Shape { vertices: n, joints: 1, embedding: 1, basis: 1, heads: 1, per_head: 2, layers: 1 };
+    let mut model = random::model(rng, shape);
+    let follow = |count: usize| Skin { joints: vec![0; count], weights: vec![1.0; count], width: 1 };
+    (model.rest, model.skin, model.triangles) = (places, follow(n), Vec::new());
+    (model.skeleton, model.mesh, model.surface) = (vec![0.0; 3 * n], vec![0.0; 3 * n], None);
+    model.graph = Graph::new(n, &[]);
+    model.rig.inverse_bind = vec![[1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0]];
+    let vertices = positions.len() / 3;
+    model.body = Some(Body {
+        vertices,
+        skin: follow(vertices),
+        rest: positions,
+        fans: Fans::new(vertices, &triangles),
+        triangles,
+        seeds: (0..4 * n).map(|_| rng.u32(..vertices as u32)).collect(),
+    });
+    model
+}
+
+/// Points within a ball twice as wide as the body.
+fn points(rng: &mut Rng, count: usize) -> Vec<f32> {
+    let point = |rng: &mut Rng| std::array::from_fn::<f32, 3, _>(|_| (2.0 * rng.f32() - 1.0) * 2.0 * RADIUS);
+    (0..count).flat_map(|_| point(rng)).collect()
+}
+
+/// Predicted positions, back in the space of the rest.
+fn predict(model: &HostModel) -> Vec<f32> {
+    let mut predictor = Predictor::from_model(model.clone(), Level::new());
+    let pose = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+    predictor.predict_row_major(&pose, Streams::Both).expect("a pose");
+    predictor.positions().to_vec()
+}
+
+fn length(point: &[f32]) -> f32 {
+    point.iter().map(|c| c * c).sum::<f32>().sqrt()
+}
+
+#[test]
+fn what_is_inside_comes_out_and_what_is_outside_stays() {
+    let mut rng = Rng::with_seed(5);
+    let (positions, triangles) = sphere();
+    let places = points(&mut rng, 4000);
+    let model = model(&mut rng, places.clone(), positions, triangles);
+    let found = predict(&model);
+    // A flat triangle of the sphere lies this far below it.
+    let sagitta = RADIUS * (1.0 - (std::f32::consts::PI / RINGS as f32).cos());
+    let (mut inside, mut outside) = (0, 0);
+    for (place, found) in places.chunks_exact(3).zip(found.chunks_exact(3)) {
+        if length(place) < RADIUS - sagitta {
+            inside += 1;
+            assert!(length(found) > RADIUS - sagitta + 0.9 * GAP, "{place:?} came to {found:?}");
+        } else if length(place) > RADIUS + 1.01 * GAP {
+            outside += 1;
+            assert!(place.iter().zip(found).all(|(a, b)| (a - b).abs() < 1e-6), "{place:?} was moved to {found:?}");
+        }
+    }
+    assert!(inside > 100 && outside > 1000, "{inside} inside, {outside} outside");
+}
+
+#[test]
+fn no_body_makes_nan() {
+    let mut rng = Rng::with_seed(6);
+    let (positions, triangles) = sphere();
+    let half = triangles[..triangles.len() / 2].to_vec();
+    let flat: Vec<f32> = positions.chunks_exact(3).flat_map(|p| [p[0], 0.0, p[2]]).collect();
+    let sliver: Vec<u32> = triangles.chunks_exact(3).flat_map(|t| [t[0], t[0], t[1]]).collect();
+    let bodies = [
+        ("open", positions.clone(), half),
+        ("a point", vec![0.01; positions.len()], triangles.clone()),
+        ("folded flat", flat, triangles.clone()),
+        ("slivers", positions.clone(), sliver),
+        ("inside out", positions.clone(), triangles.chunks_exact(3).flat_map(|t| [t[0], t[2], t[1]]).collect()),
+        ("without triangles", positions, Vec::new()),
+    ];
+    for (name, positions, triangles) in bodies {
+        let places = points(&mut rng, 500);
+        let model = model(&mut rng, places.clone(), positions, triangles);
+        let found = predict(&model);
+        assert!(found.iter().all(|c| c.is_finite()), "{name}");
+        let far = places.iter().zip(&found).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+        assert!(far < 2.0 * RADIUS, "{name}: a vertex flew {far} m");
+    }
+}
+
+/// A displacement takes the neighbours along, and what must move still does.
+#[test]
+fn neighbours_follow() {
+    let mut rng = Rng::with_seed(7);
+    let (positions, triangles) = sphere();
+    // One vertex inside, two beside it outside, one apart.
+    let places = vec![0.0, 0.045, 0.0, 0.02, 0.07, 0.0, -0.02, 0.07, 0.0, 0.0, 0.09, 0.0];
+    let mut model = model(&mut rng, places.clone(), positions, triangles);
+    model.graph = Graph::new(4, &[0, 1, 2]);
+    let found = predict(&model);
+    assert!(length(&found[..3]) > RADIUS + 0.8 * GAP, "{found:?}");
+    for vertex in [1, 2] {
+        let rise = found[3 * vertex + 1] - places[3 * vertex + 1];
+        assert!((1e-3..RADIUS).contains(&rise), "vertex {vertex} rose by {rise}");
+    }
+    assert_eq!(found[9..], places[9..]);
+}
+
+#[cfg(not(target_arch = "wasm32"))]
+#[test]
+fn the_gpu_agrees() {
+    use pollster::block_on;
+    let gpu = block_on(ctsn_gpu::Gpu::new()).expect("a Vulkan adapter (Debian: mesa-vulkan-drivers)");
+    let mut rng = Rng::with_seed(8);
+    let (positions, triangles) = sphere();
+    let places = points(&mut rng, 999);
+    let mut model = model(&mut rng, places, positions, triangles);
+    model.graph = Graph::new(999, &(0..997).flat_map(|i| [i, i + 1, i + 2]).collect::<Vec<_>>());
+    let on_gpu = block_on(ctsn_gpu::Model::new(&gpu, &model)).expect("a model");
+    let mut on_gpu = block_on(ctsn_gpu::Predictor::new(&on_gpu)).expect("a predictor");
+    let mut on_cpu = Predictor::from_model(model.clone(), Level::new());
+    let mut bare = Predictor::from_model(HostModel { body: None, ..model }, Level::new());
+    for _ in 0..20 {
+        let pose = random::pose(&mut rng, 1);
+        on_gpu.predict_row_major(&pose, Streams::Both).expect("a pose");
+        on_cpu.predict_row_major(&pose, Streams::Both).expect("a pose");
+        bare.predict_row_major(&pose, Streams::Both).expect("a pose");
+        let found = block_on(on_gpu.read()).expect("a prediction").positions;
+        let difference = |a: &[f32], b: &[f32]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+        assert!(difference(&found, on_cpu.positions()) <= 1e-4);
+        assert!(difference(bare.positions(), on_cpu.positions()) > 0.01, "nothing was repaired");
+    }
+}
