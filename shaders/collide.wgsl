@@ -63,17 +63,15 @@ fn walk(i: u32, point: vec3<f32>) -> u32 {
 
 // Share of the way from a point along an edge to where it is closest.
 fn along(offset: vec3<f32>, way: vec3<f32>) -> f32 {
-    let length = squared(way);
-    return select(0.0, clamp(dot(offset, way) / length, 0.0, 1.0), length > 0.0);
+    return select(0.0, clamp(dot(offset, way) / squared(way), 0.0, 1.0), squared(way) > 0.0);
 }
 
 // Barycentric coordinates of the point of triangle abc closest to the point: by areas inside, else on the nearest edge.
 fn closest(point: vec3<f32>, a: vec3<f32>, b: vec3<f32>, c: vec3<f32>) -> vec3<f32> {
     let across = cross(b - a, c - a);
-    let area = squared(across);
-    if (area > 0.0) {
-        let v = dot(cross(point - a, c - a), across) / area;
-        let w = dot(cross(b - a, point - a), across) / area;
+    if (squared(across) > 0.0) {
+        let v = dot(cross(point - a, c - a), across) / squared(across);
+        let w = dot(cross(b - a, point - a), across) / squared(across);
         if (v >= 0.0 && w >= 0.0 && v + w <= 1.0) {
             return vec3(1.0 - v - w, v, w);
         }
