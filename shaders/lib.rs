@@ -86,6 +86,8 @@ params! {
     Normals { vertices: u32 }
     /// `Params` of skin.wgsl.
     Skin { vertices: u32, width: u32, back: u32, world: u32 }
+    /// `Params` of surface.wgsl.
+    Surface { drawn: u32 }
 }
 
 macro_rules! shaders {
@@ -123,6 +125,8 @@ shaders! {
     NORMALS: Normals, "normals" + [], [Read Read Read Write], [64, 1];
     /// Rest, joints, weights, transforms -> positions.
     SKIN: Skin, "skin" + [], [Read Read Read Read Write], [64, 1];
+    /// Vertex, positions, normals -> drawn positions, drawn normals.
+    SURFACE: Surface, "surface" + [], [Read Read Read Write Write], [64, 1];
 }
 
 /// Most features of a graph layer: what attend.wgsl holds in workgroup memory.

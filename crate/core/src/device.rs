@@ -2,6 +2,7 @@
 //! An operation is the unit of fusion: each has a file of its name on every device, and a gradient of its name for training.
 
 use crate::model::{Layer, Linear, Reference, Sizes, Skin};
+use crate::network::Drawn;
 use crate::pose::Rig;
 use crate::topology::Graph;
 
@@ -90,4 +91,12 @@ pub trait Device {
     );
     /// positions [n, 3], triangles [t, 3] -> area-weighted unit normals [n, 3].
     fn normals(&mut self, positions: &Self::Buffer, triangles: &[u32], normals: &mut Self::Buffer);
+    /// Drawn vertex -> cloth vertex [d], positions and normals [n, 3] -> those of the drawn vertices [d, 3].
+    fn surface(
+        &mut self,
+        vertex: &[u32],
+        positions: &Self::Buffer,
+        normals: &Self::Buffer,
+        drawn: &mut Drawn<Self::Buffer>,
+    );
 }

@@ -102,6 +102,16 @@ impl Predictor {
         &self.activations.normals
     }
 
+    /// Positions of the drawn vertices [d, 3]: of the surface where the model has one, of the cloth otherwise.
+    pub fn drawn_positions(&self) -> &[f32] {
+        self.activations.drawn.as_ref().map_or(self.positions(), |drawn| &drawn.positions)
+    }
+
+    /// Unit normals of the drawn vertices [d, 3].
+    pub fn drawn_normals(&self) -> &[f32] {
+        self.activations.drawn.as_ref().map_or(self.normals(), |drawn| &drawn.normals)
+    }
+
     /// Every intermediate result of the last prediction.
     pub fn activations(&self) -> &Activations<Vec<f32>> {
         &self.activations

@@ -12,8 +12,9 @@ mod predictor;
 mod read;
 mod recorder;
 mod recording;
+mod timestamps;
 
-pub use cost::Cost;
+pub use cost::{Cost, Stage};
 pub use error::{Error, Result};
 pub use gpu::Gpu;
 pub use model::Model;

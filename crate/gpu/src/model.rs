@@ -1,5 +1,6 @@
 //! A model on a GPU: its constants, uploaded once, and the recorded frames. Shared by all predictors of the model.
 
+use crate::cost::{Stage, stages};
 use crate::recorder::Recorder;
 use crate::recording::{Dispatch, Room};
 use crate::{Gpu, Result};
@@ -26,8 +27,10 @@ pub(crate) struct Inner {
     pub joints: usize,
     pub positions: usize,
     pub normals: usize,
+    /// Positions and normals of what is drawn: the cloth's own where the model has no surface.
+    pub drawn: [usize; 2],
     /// Rooms of the stages' results, by name.
-    pub stages: Vec<(String, usize)>,
+    pub results: Vec<(String, usize)>,
 }
 
 impl Model {
@@ -54,9 +57,9 @@ impl Model {
         &self.0.rig
     }
 
-    /// Dispatches of a frame.
-    pub fn dispatches(&self, streams: Streams) -> usize {
-        self.0.frame(streams).len()
+    /// Stages of a frame, in order, with their dispatches and least work.
+    pub fn stages(&self, streams: Streams) -> Vec<Stage> {
+        stages(self.0.frame(streams)).0
     }
 }
 
@@ -76,10 +79,11 @@ fn record(gpu: &Gpu, model: &HostModel) -> Result<Model> {
     }
     let room = |id| recorder.room(id).unwrap_or_else(|| unreachable!("every frame writes it"));
     let (joints, positions, normals) = (room(a.joints), room(a.positions), room(a.normals));
-    let stages = a.stages().into_iter().map(|(name, id)| (name, room(*id))).collect();
+    let drawn = a.drawn.as_ref().map_or([positions, normals], |drawn| [room(drawn.positions), room(drawn.normals)]);
+    let results = a.stages().into_iter().map(|(name, id)| (name, room(*id))).collect();
     let Recorder { constants, rooms, .. } = recorder;
     let (gpu, sizes, rig) = (gpu.clone(), model.sizes, model.rig.clone());
-    Ok(Model(Arc::new(Inner { gpu, sizes, rig, constants, rooms, frames, joints, positions, normals, stages })))
+    Ok(Model(Arc::new(Inner { gpu, sizes, rig, constants, rooms, frames, joints, positions, normals, drawn, results })))
 }
 
 impl Inner {

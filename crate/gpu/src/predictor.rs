@@ -14,7 +14,7 @@ pub struct Predictor {
     pub(crate) buffers: Vec<wgpu::Buffer>,
     /// Frames by streams: both, skeleton, none.
     frames: [Vec<Step>; 3],
-    reader: Reader,
+    pub(crate) reader: Reader,
 }
 
 /// A dispatch with its resources.
@@ -50,7 +50,11 @@ impl Predictor {
     fn make(model: &Model) -> Self {
         let (gpu, inner) = (model.gpu(), &model.0);
         let buffer = |(i, room): (usize, &crate::recording::Room)| {
-            let shown = if [inner.positions, inner.normals].contains(&i) { Usage::VERTEX } else { Usage::empty() };
+            let shown = if [inner.positions, inner.normals].contains(&i) || inner.drawn.contains(&i) {
+                Usage::VERTEX
+            } else {
+                Usage::empty()
+            };
             gpu.device().create_buffer(&wgpu::BufferDescriptor {
                 label: Some(&room.stage),
                 size: (room.rows * room.stride * 4) as u64,
@@ -123,6 +127,16 @@ impl Predictor {
         &self.buffers[self.model.0.normals]
     }
 
+    /// Positions of the drawn vertices [d, 3], not padded: of the surface where the model has one, of the cloth otherwise.
+    pub fn drawn_positions(&self) -> &wgpu::Buffer {
+        &self.buffers[self.model.0.drawn[0]]
+    }
+
+    /// Unit normals of the drawn vertices [d, 3].
+    pub fn drawn_normals(&self) -> &wgpu::Buffer {
+        &self.buffers[self.model.0.drawn[1]]
+    }
+
     /// Reads back the last prediction submitted before this call. The future borrows nothing: further frames may follow, and
     /// further reads. Natively it waits for the GPU when first polled.
     ///
@@ -130,7 +144,7 @@ impl Predictor {
     /// [`Error::Lost`]; a prediction that is not finite.
     pub fn read(&self) -> impl Future<Output = Result<Prediction>> + use<> {
         let buffers = [self.positions(), self.normals()];
-        let read = self.reader.read(self.model.gpu(), &buffers);
+        let read = self.reader.read::<f32>(self.model.gpu(), &buffers);
         async move {
             let mut results = read.await?;
             let normals = results.pop().unwrap_or_default();
@@ -151,7 +165,7 @@ impl Predictor {
     /// [`Error::Lost`].
     pub fn stages(&self) -> impl Future<Output = Result<Vec<(String, Vec<f32>)>>> + use<> {
         let inner = self.model.0.clone();
-        let buffers: Vec<&wgpu::Buffer> = inner.stages.iter().map(|(_, room)| &self.buffers[*room]).collect();
+        let buffers: Vec<&wgpu::Buffer> = inner.results.iter().map(|(_, room)| &self.buffers[*room]).collect();
         let read = self.reader.read(self.model.gpu(), &buffers);
         async move {
             let unpad = |((name, room), values): (&(String, usize), Vec<f32>)| {
@@ -159,7 +173,7 @@ impl Predictor {
                 let rows = values.chunks_exact(room.stride).flat_map(|row| row[..room.columns].iter().copied());
                 (name.clone(), rows.collect())
             };
-            Ok(inner.stages.iter().zip(read.await?).map(unpad).collect())
+            Ok(inner.results.iter().zip(read.await?).map(unpad).collect())
         }
     }
 }

@@ -10,7 +10,11 @@ pub(crate) struct Reader(Arc<Mutex<Vec<wgpu::Buffer>>>);
 
 impl Reader {
     /// Orders a copy of `buffers` as they are after all that was submitted; their content, once it is there.
-    pub fn read(&self, gpu: &Gpu, buffers: &[&wgpu::Buffer]) -> impl Future<Output = Result<Vec<Vec<f32>>>> + use<> {
+    pub fn read<T: bytemuck::Pod>(
+        &self,
+        gpu: &Gpu,
+        buffers: &[&wgpu::Buffer],
+    ) -> impl Future<Output = Result<Vec<Vec<T>>>> + use<T> {
         let sizes: Vec<u64> = buffers.iter().map(|buffer| buffer.size()).collect();
         let staging = self.take(gpu, sizes.iter().sum());
         let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());

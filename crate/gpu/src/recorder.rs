@@ -7,6 +7,7 @@ use crate::{Error, Gpu, Result};
 use bytemuck::Pod;
 use ctsn_core::device::{Activation, Device, Space};
 use ctsn_core::model::{Layer, Linear, Reference, Sizes, Skin};
+use ctsn_core::network::Drawn;
 use ctsn_core::pose::{Frame, Rig};
 use ctsn_core::topology::Graph;
 use ctsn_shaders::{self as shaders, Shader};
@@ -343,5 +344,17 @@ impl Device for Recorder<'_> {
         ];
         let params = shaders::Normals { vertices: n as u32 };
         self.dispatch(&shaders::NORMALS, params, &operands, [n, 1], *normals, 18 * triangles.len() + 9 * n);
+    }
+
+    fn surface(&mut self, vertex: &[u32], positions: &Id, normals: &Id, drawn: &mut Drawn<Id>) {
+        let operands = [
+            self.pack(("surface vertex", 0), |_| vertex.to_vec()),
+            self.input(*positions),
+            self.input(*normals),
+            self.output(drawn.positions, 3, 3),
+            self.output(drawn.normals, 3, 3),
+        ];
+        let params = shaders::Surface { drawn: vertex.len() as u32 };
+        self.dispatch(&shaders::SURFACE, params, &operands, [vertex.len(), 1], drawn.positions, 0);
     }
 }

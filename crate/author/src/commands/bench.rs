@@ -1,11 +1,14 @@
 //! `ctsn bench`: milliseconds per prediction and per training step on this machine.
 
-use super::Network;
+mod gpu;
+
+use super::{Device, Network};
 use anyhow::Result;
+use ctsn_author::dataset::{Sample, Setup};
 use ctsn_author::synthetic;
 use ctsn_author::train::{Settings, Trainer};
 use ctsn_core::cpu::Level;
-use ctsn_core::model::Storage;
+use ctsn_core::model::{HostModel, Storage};
 use ctsn_core::{Predictor, Streams};
 use std::path::PathBuf;
 use std::time::Instant;
@@ -21,6 +24,9 @@ pub struct Arguments {
     joints: usize,
     #[command(flatten)]
     network: Network,
+    /// What computes
+    #[arg(long, value_enum, default_value = "cpu")]
+    device: Device,
     /// Predictions timed
     #[arg(long, default_value_t = 200)]
     runs: usize,
@@ -42,12 +48,25 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         return Ok(ctsn_author::dataset::write(path, &model.to_bytes(Storage::F32))?);
     }
     println!("n = {}, J = {joints}, {architecture:?}", model.sizes.vertices);
+    let poses: Vec<&[f32]> = samples.iter().map(|sample| sample.joints.as_slice()).collect();
+    match arguments.device {
+        Device::Cpu => cpu(&model, &poses, runs.max(1))?,
+        Device::Gpu => gpu::run(&model, &poses, runs.max(1))?,
+    }
+    if arguments.train {
+        train(model, &setup, &samples)?;
+    }
+    Ok(())
+}
+
+/// Predictions on the CPU.
+fn cpu(model: &HostModel, poses: &[&[f32]], runs: usize) -> Result<()> {
     for (name, level) in [("SIMD", Level::new()), ("baseline", Level::baseline())] {
         let mut predictor = Predictor::from_model(model.clone(), level);
         let mut times: Vec<f64> = Vec::new();
-        for run in 0..runs.max(1) {
+        for run in 0..runs {
             let start = Instant::now();
-            predictor.predict_row_major(&samples[run % samples.len()].joints, Streams::Both)?;
+            predictor.predict_row_major(poses[run % poses.len()], Streams::Both)?;
             times.push(start.elapsed().as_secs_f64() * 1e3);
         }
         println!(
@@ -57,23 +76,21 @@ pub fn run(arguments: &Arguments) -> Result<()> {
             times[0]
         );
     }
-    if arguments.train {
-        let settings = Settings { epochs: 10, ..Settings::default() };
-        let mut trainer = Trainer::new(model, &setup, &samples, settings)?;
-        let (mut times, mut last) = (Vec::new(), Instant::now());
-        while trainer.epoch < settings.epochs {
-            trainer.epoch(|_, _, _| {
-                times.push(last.elapsed().as_secs_f64() * 1e3);
-                last = Instant::now();
-            })?;
-        }
-        println!(
-            "training  {:.1} ms a step of {} poses (median of {})",
-            median(&mut times),
-            settings.batch,
-            times.len()
-        );
+    Ok(())
+}
+
+/// Training steps.
+fn train(model: HostModel, setup: &Setup, samples: &[&Sample]) -> Result<()> {
+    let settings = Settings { epochs: 10, ..Settings::default() };
+    let mut trainer = Trainer::new(model, setup, samples, settings)?;
+    let (mut times, mut last) = (Vec::new(), Instant::now());
+    while trainer.epoch < settings.epochs {
+        trainer.epoch(|_, _, _| {
+            times.push(last.elapsed().as_secs_f64() * 1e3);
+            last = Instant::now();
+        })?;
     }
+    println!("training  {:.1} ms a step of {} poses (median of {})", median(&mut times), settings.batch, times.len());
     Ok(())
 }
 

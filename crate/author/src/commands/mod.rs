@@ -50,6 +50,15 @@ impl Network {
     }
 }
 
+/// What computes a prediction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Device {
+    /// SIMD on this machine's processor
+    Cpu,
+    /// This machine's GPU, by Vulkan
+    Gpu,
+}
+
 /// Reads a model file, naming it in errors.
 pub fn model(path: &Path) -> Result<HostModel> {
     HostModel::parse(&dataset::read(path)?).with_context(|| path.display().to_string())

@@ -1,11 +1,14 @@
 //! `ctsn predict`: poses in, positions and normals out.
 
-use super::model;
+use super::{Device, model};
 use anyhow::{Context, Result};
 use ctsn_author::dataset;
 use ctsn_core::cpu::Level;
 use ctsn_core::file::{Tensor, Tensors};
+use ctsn_core::model::HostModel;
 use ctsn_core::{Predictor, Streams};
+use ctsn_gpu::Gpu;
+use pollster::block_on;
 use std::path::PathBuf;
 
 /// Predict cloth for a file of poses
@@ -30,12 +33,6 @@ pub struct Arguments {
 }
 
 #[derive(Clone, Copy, clap::ValueEnum)]
-enum Device {
-    /// SIMD on this machine's processor
-    Cpu,
-}
-
-#[derive(Clone, Copy, clap::ValueEnum)]
 enum StreamsArgument {
     /// The whole network
     Both,
@@ -56,18 +53,42 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         StreamsArgument::Skeleton => Streams::Skeleton,
         StreamsArgument::None => Streams::None,
     };
-    let Device::Cpu = arguments.device;
-    let mut predictor = Predictor::from_model(model, Level::new());
-    let (mut positions, mut normals) = (Vec::new(), Vec::new());
-    for pose in poses.chunks_exact(12 * joints) {
-        predictor.predict_row_major(pose, streams)?;
-        positions.extend_from_slice(predictor.positions());
-        normals.extend_from_slice(predictor.normals());
-    }
+    let poses = poses.chunks_exact(12 * joints);
+    let [positions, normals] = match arguments.device {
+        Device::Cpu => cpu(model, poses, streams)?,
+        Device::Gpu => gpu(&model, poses, streams)?,
+    };
     let mut out = Tensors::default();
     out.tensors.insert("positions".to_owned(), Tensor::f32(&[shape[0], n, 3], &positions));
     out.tensors.insert("normals".to_owned(), Tensor::f32(&[shape[0], n, 3], &normals));
     dataset::write(&arguments.output, &out.to_bytes())?;
     println!("{} poses of {n} vertices -> {}", shape[0], arguments.output.display());
     Ok(())
+}
+
+/// Positions and normals of every pose.
+fn cpu<'a>(model: HostModel, poses: impl Iterator<Item = &'a [f32]>, streams: Streams) -> Result<[Vec<f32>; 2]> {
+    let mut predictor = Predictor::from_model(model, Level::new());
+    let mut results = [Vec::new(), Vec::new()];
+    for pose in poses {
+        predictor.predict_row_major(pose, streams)?;
+        results[0].extend_from_slice(predictor.positions());
+        results[1].extend_from_slice(predictor.normals());
+    }
+    Ok(results)
+}
+
+/// The same by the GPU.
+fn gpu<'a>(model: &HostModel, poses: impl Iterator<Item = &'a [f32]>, streams: Streams) -> Result<[Vec<f32>; 2]> {
+    let gpu = block_on(Gpu::new())?;
+    println!("on {}", gpu.name());
+    let mut predictor = block_on(ctsn_gpu::Predictor::new(&block_on(ctsn_gpu::Model::new(&gpu, model))?))?;
+    let mut results = [Vec::new(), Vec::new()];
+    for pose in poses {
+        predictor.predict_row_major(pose, streams)?;
+        let prediction = block_on(predictor.read())?;
+        results[0].extend(prediction.positions);
+        results[1].extend(prediction.normals);
+    }
+    Ok(results)
 }

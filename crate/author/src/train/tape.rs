@@ -5,6 +5,7 @@ use super::gradient;
 use ctsn_core::cpu::Level;
 use ctsn_core::device::{Activation, Device, Space};
 use ctsn_core::model::{Layer, Linear, Reference, Sizes, Skin};
+use ctsn_core::network::Drawn;
 use ctsn_core::pose::Rig;
 use ctsn_core::topology::Graph;
 
@@ -226,5 +227,9 @@ impl Device for Tape {
 
     fn normals(&mut self, _positions: &Id, _triangles: &[u32], _normals: &mut Id) {
         // Not part of the loss (network.md §6), so there is nothing to remember.
+    }
+
+    fn surface(&mut self, _vertex: &[u32], _positions: &Id, _normals: &Id, _drawn: &mut Drawn<Id>) {
+        // Nor is this.
     }
 }

@@ -10,10 +10,12 @@ pub mod gate;
 pub mod linear;
 pub mod normals;
 pub mod skin;
+pub mod surface;
 pub mod vector;
 
 use crate::device::{Activation, Device, Space};
 use crate::model::{Layer, Linear, Reference, Sizes, Skin};
+use crate::network::Drawn;
 use crate::pose::Rig;
 use crate::topology::Graph;
 pub use fearless_simd::Level;
@@ -115,5 +117,10 @@ impl Device for Cpu {
 
     fn normals(&mut self, positions: &Vec<f32>, triangles: &[u32], normals: &mut Vec<f32>) {
         normals::normals(positions, triangles, normals);
+    }
+
+    fn surface(&mut self, vertex: &[u32], positions: &Vec<f32>, normals: &Vec<f32>, drawn: &mut Drawn<Vec<f32>>) {
+        surface::surface(vertex, positions, &mut drawn.positions);
+        surface::surface(vertex, normals, &mut drawn.normals);
     }
 }

@@ -52,6 +52,16 @@ pub struct Activations<B> {
     pub positions: B,
     /// Unit normals of the predicted positions [n, 3].
     pub normals: B,
+    /// The same of the drawn vertices, where the model tells them apart from the cloth's.
+    pub drawn: Option<Drawn<B>>,
+}
+
+/// What is drawn: vertices split at seams.
+pub struct Drawn<B> {
+    /// Positions [d, 3].
+    pub positions: B,
+    /// Unit normals [d, 3].
+    pub normals: B,
 }
 
 /// Intermediate results of one graph layer.
@@ -89,6 +99,10 @@ impl<B> Activations<B> {
             template: buffer("template", n * 3),
             positions: buffer("positions", n * 3),
             normals: buffer("normals", n * 3),
+            drawn: model.surface.as_ref().filter(|surface| !surface.vertex.is_empty()).map(|surface| Drawn {
+                positions: buffer("surface", surface.vertex.len() * 3),
+                normals: buffer("surface", surface.vertex.len() * 3),
+            }),
         }
     }
 
@@ -105,11 +119,14 @@ impl<B> Activations<B> {
     }
 }
 
-/// The whole frame: joints (written before) -> positions in the world and their normals.
+/// The whole frame: joints (written before) -> positions in the world, their normals, and what is drawn.
 pub fn frame<D: Device>(device: &mut D, model: &DeviceModel<D>, streams: Streams, a: &mut Activations<D::Buffer>) {
     device.body_frame(&model.rig, &a.joints, &mut a.body_frame, &mut a.pose);
     forward(device, model, streams, Space::World, a);
     device.normals(&a.positions, &model.triangles, &mut a.normals);
+    if let (Some(surface), Some(drawn)) = (&model.surface, &mut a.drawn) {
+        device.surface(&surface.vertex, &a.positions, &a.normals, drawn);
+    }
 }
 
 /// Pose and body frame (written before) -> template and positions in `space`.
