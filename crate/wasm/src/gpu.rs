@@ -71,16 +71,12 @@ impl GpuPredictor {
         })
     }
 
-    /// Predicted positions [3·n], world, metres: tightly packed, fit to be a vertex or storage buffer.
-    #[wasm_bindgen(unchecked_return_type = "GPUBuffer")]
-    pub fn positions(&self) -> JsValue {
-        handle(self.0.positions())
-    }
-
-    /// Unit vertex normals [3·n], as the positions.
-    #[wasm_bindgen(unchecked_return_type = "GPUBuffer")]
-    pub fn normals(&self) -> JsValue {
-        handle(self.0.normals())
+    /// Predicted positions by buffer: of the cloth vertices [3·n] and of the drawn ones [3·d], world, metres, tightly packed,
+    /// fit to be vertex or storage buffers; then their unit normals likewise.
+    #[wasm_bindgen(unchecked_return_type = "[GPUBuffer, GPUBuffer, GPUBuffer, GPUBuffer]")]
+    pub fn buffers(&self) -> Array {
+        let buffers = [self.0.positions(), self.0.drawn_positions(), self.0.normals(), self.0.drawn_normals()];
+        buffers.into_iter().map(handle).collect()
     }
 }
 

@@ -37,11 +37,11 @@ export class Cloth<M extends Material | Material[] = Material> extends Mesh<Buff
   }
 
   /** Predicts the cloth for the bones as they stand now. Allocates nothing. */
-  update(options?: PredictOptions): this {
+  update(options?: Pick<PredictOptions, 'streams'>): this {
     refresh(this.#tops);
     const { model, geometry } = this;
     if (splitPlacement(this.bones, model.rootIndex, this.#rootInverseBind, this.#pose, this.#placement)) {
-      drawFrame(geometry, model.predictCloth(this.#pose, options), model.surface?.vertex);
+      drawFrame(geometry, model.predictCloth(this.#pose, { ...options, backend: 'cpu' }), model.surface?.vertex);
     }
     this.#place();
     return this;
