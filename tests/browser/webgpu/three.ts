@@ -1,0 +1,240 @@
+// What runs in the page of webgpu.test.ts with three's WebGPURenderer: garments drawn, and their pictures compared.
+import * as THREE from 'three/webgpu';
+import { Cloth, deviceOf } from 'ctsn/three';
+import { loadModel, type BackendChoice, type ClothBuffers } from 'ctsn';
+import { address, characterOf, difference, readBuffer, strike, type Golden } from './page.js';
+
+const [width, height] = [320, 240];
+
+/** A renderer with its scene, and pictures of it. */
+class Studio {
+  readonly scene = new THREE.Scene();
+  readonly camera = new THREE.PerspectiveCamera(40, width / height, 0.05, 50);
+  readonly target = new THREE.RenderTarget(width, height);
+  readonly errors: string[] = [];
+
+  private constructor(readonly renderer: THREE.WebGPURenderer) {
+    const sun = new THREE.DirectionalLight(0xffffff, 3);
+    sun.position.set(1, 2, 1.5);
+    sun.castShadow = true;
+    Object.assign(sun.shadow.camera, { left: -2, right: 2, top: 2, bottom: -2, far: 20 });
+    renderer.shadowMap.enabled = true;
+    const floor = new THREE.Mesh(new THREE.PlaneGeometry(8, 8).rotateX(-Math.PI / 2), new THREE.MeshStandardNodeMaterial({ color: 0xbbbbbb }));
+    floor.receiveShadow = true;
+    this.scene.background = new THREE.Color(0x203040);
+    this.scene.add(sun, new THREE.AmbientLight(0xffffff, 0.4), floor);
+  }
+
+  static async open(): Promise<Studio> {
+    const canvas = Object.assign(document.createElement('canvas'), { width, height });
+    document.body.append(canvas);
+    const renderer = new THREE.WebGPURenderer({ canvas });
+    await renderer.init();
+    renderer.setSize(width, height);
+    const studio = new Studio(renderer);
+    const device = deviceOf(renderer);
+    if (!device) throw new Error('three.js found no WebGPU adapter');
+    device.addEventListener('uncapturederror', ({ error }) => studio.errors.push(error.message));
+    return studio;
+  }
+
+  /** Looks at a sphere from the front and above. */
+  frame({ center, radius }: THREE.Sphere): void {
+    this.camera.position.set(center.x + 0.6 * radius, center.y + 1.2 * radius, center.z + 3 * radius);
+    this.camera.lookAt(center);
+  }
+
+  /** The pixels of the scene, and the scene on the page. */
+  async picture(): Promise<Uint8Array> {
+    this.renderer.setRenderTarget(this.target);
+    this.renderer.render(this.scene, this.camera);
+    const pixels = await this.renderer.readRenderTargetPixelsAsync(this.target, 0, 0, width, height);
+    this.renderer.setRenderTarget(null);
+    this.renderer.render(this.scene, this.camera);
+    return new Uint8Array(pixels.buffer);
+  }
+
+  close(): void {
+    this.renderer.domElement.remove();
+    this.renderer.dispose();
+  }
+}
+
+/** Share of the pixels that clearly differ. */
+function apart(a: Uint8Array, b: Uint8Array): number {
+  if (a.length !== b.length || a.length < 4 * width * height) return 1;
+  let count = 0;
+  for (let at = 0; at < a.length; at += 4) if ([0, 1, 2].some((channel) => Math.abs(a[at + channel]! - b[at + channel]!) > 8)) count++;
+  return (4 * count) / a.length;
+}
+
+async function dress(studio: Studio, { name, poses }: Golden, backend: BackendChoice, renderer?: THREE.WebGPURenderer) {
+  const model = await loadModel(address(name), { backend, device: deviceOf(studio.renderer) });
+  const character = characterOf(model.joints, poses[0]!);
+  const cloth = new Cloth(model, character, new THREE.MeshStandardNodeMaterial({ color: 0x3a86ff, side: THREE.DoubleSide }) as THREE.Material, renderer);
+  cloth.castShadow = cloth.receiveShadow = true;
+  studio.scene.add(cloth);
+  return { model, character, cloth };
+}
+
+/** Runs the cloth until it draws what it should: the first update asks for buffers, the next uses them. */
+async function settle(cloth: Cloth): Promise<void> {
+  cloth.update();
+  await cloth.settled();
+  cloth.update();
+  await cloth.settled();
+}
+
+/** Moves every vertex in our buffer half a metre up, behind three's back: only who draws from it can tell. */
+async function lift(buffers: ClothBuffers): Promise<void> {
+  const values = await readBuffer(buffers.drawnPositions, buffers.device);
+  buffers.device.queue.writeBuffer(buffers.drawnPositions, 0, values.map((value, i) => (i % 3 === 1 ? value + 0.5 : value)));
+}
+
+/** The garment in several poses from our buffer, from the CPU's arrays, and not at all. */
+export async function drawn(golden: Golden) {
+  const studio = await Studio.open();
+  const device = deviceOf(studio.renderer)!;
+  const ours = await dress(studio, golden, 'webgpu', studio.renderer);
+  const theirs = await dress(studio, golden, 'cpu');
+  studio.frame(theirs.cloth.geometry.boundingSphere!.clone().applyMatrix4(theirs.cloth.matrixWorld));
+  const before = { backend: ours.cloth.backend, zeroCopy: ours.cloth.zeroCopy };
+  const pictures = [];
+  let bounded = true;
+  for (const pose of golden.poses) {
+    for (const { character } of [ours, theirs]) strike(character, pose);
+    await settle(ours.cloth);
+    theirs.cloth.update();
+    ours.cloth.visible = true;
+    theirs.cloth.visible = false;
+    const fromBuffer = await studio.picture();
+    ours.cloth.visible = false;
+    const nothing = await studio.picture();
+    theirs.cloth.visible = true;
+    const fromArrays = await studio.picture();
+    pictures.push({ difference: apart(fromBuffer, fromArrays), covered: apart(fromArrays, nothing) });
+    bounded &&= holds(ours.cloth.geometry.boundingSphere!, theirs.cloth.geometry.getAttribute('position').array as Float32Array);
+  }
+  theirs.cloth.visible = false;
+  ours.cloth.visible = true;
+  const zeroCopy = ours.cloth.zeroCopy;
+  // The array three would have uploaded is not what was drawn.
+  const arrays = difference(ours.cloth.geometry.getAttribute('position').array as Float32Array, theirs.cloth.geometry.getAttribute('position').array as Float32Array);
+  const result = { before, zeroCopy, pictures, bounded, arrays, sameDevice: ours.model.device === device, errors: studio.errors };
+  for (const { cloth, model } of [ours, theirs]) {
+    cloth.dispose();
+    model.dispose();
+  }
+  studio.close();
+  return result;
+}
+
+function holds({ center, radius }: THREE.Sphere, positions: Float32Array): boolean {
+  for (let at = 0; at < positions.length; at += 3) {
+    if (center.distanceTo(new THREE.Vector3().fromArray(positions, at)) > radius) return false;
+  }
+  return true;
+}
+
+/**
+ * What a test of zero copies must notice: vertices moved in our buffer move on the screen if three draws from it, and do not
+ * if three has a copy; and a cloth without its buffer does not look like one.
+ */
+export async function control(golden: Golden) {
+  const studio = await Studio.open();
+  const share = async (renderer?: THREE.WebGPURenderer) => {
+    const { model, cloth } = await dress(studio, golden, 'webgpu', renderer);
+    studio.frame(cloth.geometry.boundingSphere!.clone().applyMatrix4(cloth.matrixWorld));
+    const buffers: ClothBuffers[] = [];
+    const create = model.createBuffers.bind(model);
+    model.createBuffers = async () => (buffers.push(await create()), buffers.at(-1)!);
+    await settle(cloth);
+    const seen = await studio.picture();
+    const own = model.predictCloth(Float32Array.from(golden.poses[0]!), { output: 'gpu' }) as ClothBuffers;
+    for (const each of [own, ...buffers]) await lift(each);
+    const lifted = await studio.picture();
+    cloth.visible = false;
+    const nothing = await studio.picture();
+    const answer = { zeroCopy: cloth.zeroCopy, moved: apart(seen, lifted), covered: apart(seen, nothing) };
+    studio.scene.remove(cloth);
+    cloth.dispose();
+    model.dispose();
+    return answer;
+  };
+  const shared = await share(studio.renderer);
+  const copied = await share();
+  // Without its buffer: three makes one of the array, which is empty.
+  const { model, cloth } = await dress(studio, golden, 'cpu');
+  const whole = await studio.picture();
+  for (const name of ['position', 'normal']) (cloth.geometry.getAttribute(name) as THREE.BufferAttribute).array.fill(0);
+  const missing = apart(whole, await studio.picture());
+  cloth.dispose();
+  model.dispose();
+  const { errors } = studio;
+  studio.close();
+  return { shared, copied, missing, errors };
+}
+
+/** Two cloths of one model in two poses, one disposed while the other goes on; then the model computes on the CPU. */
+export async function twins(golden: Golden) {
+  const studio = await Studio.open();
+  const { model, cloth } = await dress(studio, golden, 'webgpu', studio.renderer);
+  studio.frame(cloth.geometry.boundingSphere!.clone().applyMatrix4(cloth.matrixWorld));
+  const twin = cloth.clone();
+  twin.castShadow = true;
+  studio.scene.add(twin);
+  await settle(cloth);
+  await settle(twin);
+  const both = [cloth.zeroCopy, twin.zeroCopy];
+  const two = await studio.picture();
+  studio.scene.remove(twin);
+  const one = await studio.picture();
+  twin.dispose();
+  await settle(cloth);
+  const left = await studio.picture();
+  await model.setBackend('cpu');
+  cloth.update();
+  const onCpu = await studio.picture();
+  const after = { backend: cloth.backend, zeroCopy: cloth.zeroCopy };
+  await model.setBackend('webgpu', deviceOf(studio.renderer));
+  await settle(cloth);
+  const back = await studio.picture();
+  const result = { both, sameWithTwin: apart(two, one), afterTwin: apart(one, left), after, onCpu: apart(left, onCpu), back: apart(left, back), again: cloth.zeroCopy };
+  cloth.dispose();
+  model.dispose();
+  const { errors } = studio;
+  studio.close();
+  return { ...result, errors };
+}
+
+/** WebGLRenderer, or none: the prediction is read back and shows late, with the device's loss in the midst. */
+export async function late(golden: Golden) {
+  const model = await loadModel(address(golden.name), { backend: 'webgpu' });
+  const character = characterOf(model.joints, golden.poses[0]!);
+  const cloth = new Cloth(model, character, new THREE.MeshBasicMaterial() as THREE.Material);
+  const shown = () => (cloth.geometry.getAttribute('position').array as Float32Array).slice();
+  const expected = (pose: number) => {
+    const twin = new Cloth(model, characterOf(model.joints, golden.poses[pose]!), cloth.material);
+    return (twin.geometry.getAttribute('position').array as Float32Array).slice();
+  };
+  const atOnce = difference(shown(), expected(0));
+  strike(character, golden.poses[1]!);
+  cloth.update();
+  const stillOld = difference(shown(), expected(0));
+  await cloth.settled();
+  const thenNew = difference(shown(), expected(1));
+  // Many frames at once: some are skipped, and the last one is shown all the same.
+  for (let i = 0; i < 10; i++) {
+    strike(character, golden.poses[i % golden.poses.length]!);
+    cloth.update();
+    if (i === 5) model.device!.destroy();
+  }
+  strike(character, golden.poses[2]!);
+  cloth.update();
+  await cloth.settled();
+  const last = difference(shown(), expected(2));
+  const { backend, fallback } = cloth;
+  cloth.dispose();
+  model.dispose();
+  return { atOnce, stillOld, thenNew, last, backend, fallback };
+}
