@@ -57,7 +57,7 @@ export class Workshop {
 
   /** What the page looks like. */
   screenshot(file: string): Promise<unknown> {
-    return this.#page!.screenshot({ path: file });
+    return this.#page!.screenshot({ path: file, fullPage: true });
   }
 
   async close(): Promise<void> {

@@ -62,6 +62,8 @@ export interface Running {
   side: GpuSide;
   /** The model's own buffers. */
   buffers: ClothBuffers;
+  /** Whether the device is ours. */
+  own: boolean;
 }
 
 /** Decides where a model computes, and changes to the CPU and back as devices go and come. */
@@ -98,10 +100,12 @@ export class Switch {
     }
   }
 
-  /** Back to the CPU: the device failed. */
+  /** Back to the CPU: the device failed. If it was ours and is lost, another one is asked for. */
   fail(error: unknown): void {
-    this.#decision++;
+    const decision = ++this.#decision;
+    const { running } = this;
     this.#leave(messageOf(error));
+    if (running?.own) void running.side.device.lost.then(() => this.#recover(decision));
   }
 
   dispose(): void {
@@ -119,9 +123,9 @@ export class Switch {
       const slower = choice === 'auto' && decision === this.#decision && (await this.#measure(buffers));
       if (decision !== this.#decision) return side.dispose();
       if (slower) throw new CtsnError('slower', slower);
-      this.running = { side, buffers };
+      this.running = { side, buffers, own: lent === undefined };
       this.reason = undefined;
-      this.#watch(decision, device, lent === undefined);
+      this.#watch(decision, this.running);
       this.#changed();
     } catch (error) {
       side.dispose();
@@ -129,19 +133,14 @@ export class Switch {
     }
   }
 
-  #watch(decision: number, device: GPUDevice, own: boolean): void {
-    const current = () => decision === this.#decision;
-    void device.lost.then(({ reason, message }) => {
-      if (!current()) return;
-      this.fail(new CtsnError('lost', `the GPU device is lost: ${message || reason}`));
-      if (own) void this.#recover();
-    });
+  #watch(decision: number, { side: { device }, own }: Running): void {
+    const fail = (error: unknown) => decision === this.#decision && this.fail(error);
+    void device.lost.then(({ reason, message }) => fail(new CtsnError('lost', `the GPU device is lost: ${message || reason}`)));
     // On a device of the page errors may be the page's; ours are caught where they can arise.
-    if (own) device.addEventListener('uncapturederror', ({ error }) => current() && this.fail(error));
+    if (own) device.addEventListener('uncapturederror', ({ error }) => fail(error));
   }
 
-  async #recover(): Promise<void> {
-    const decision = this.#decision;
+  async #recover(decision: number): Promise<void> {
     for (const seconds of PATIENCE) {
       await new Promise((resolve) => setTimeout(resolve, 1000 * seconds));
       if (decision !== this.#decision) return;

@@ -174,9 +174,9 @@ export async function rounds({ poses }: Golden, count: number) {
 }
 
 /** An animation during which the device is destroyed; every frame must be the CPU's answer for its own pose. */
-export async function loss({ poses, positions }: Golden, lent: boolean) {
+export async function loss({ name, poses, positions }: Golden, lent: boolean) {
   const given = lent ? await (await navigator.gpu.requestAdapter())!.requestDevice() : undefined;
-  const model = await load('small', 'webgpu', given);
+  const model = await load(name, 'webgpu', given);
   const device = model.device!;
   const events: string[] = [];
   model.addEventListener('backend', () => events.push(model.backend));

@@ -38,9 +38,10 @@ class Studio {
     return studio;
   }
 
-  /** Looks at a sphere from the front and above. */
-  frame({ center, radius }: THREE.Sphere): void {
-    this.camera.position.set(center.x + 0.6 * radius, center.y + 1.2 * radius, center.z + 3 * radius);
+  /** Looks at a cloth drawn from arrays, from the front and above. */
+  frame(cloth: Cloth): void {
+    const { center, radius } = cloth.geometry.boundingSphere!.clone().applyMatrix4(cloth.matrixWorld);
+    this.camera.position.set(center.x + 0.5 * radius, center.y + radius, center.z + 2.5 * radius);
     this.camera.lookAt(center);
   }
 
@@ -66,6 +67,16 @@ function apart(a: Uint8Array, b: Uint8Array): number {
   let count = 0;
   for (let at = 0; at < a.length; at += 4) if ([0, 1, 2].some((channel) => Math.abs(a[at + channel]! - b[at + channel]!) > 8)) count++;
   return (4 * count) / a.length;
+}
+
+/** Puts pictures side by side on the page, for people. */
+function show(...pictures: Uint8Array[]): void {
+  for (const pixels of pictures) {
+    const canvas = Object.assign(document.createElement('canvas'), { width, height });
+    const image = new ImageData(Uint8ClampedArray.from(pixels), width, height);
+    canvas.getContext('2d')!.putImageData(image, 0, 0);
+    document.body.append(canvas);
+  }
 }
 
 async function dress(studio: Studio, { name, poses }: Golden, backend: BackendChoice, renderer?: THREE.WebGPURenderer) {
@@ -97,7 +108,6 @@ export async function drawn(golden: Golden) {
   const device = deviceOf(studio.renderer)!;
   const ours = await dress(studio, golden, 'webgpu', studio.renderer);
   const theirs = await dress(studio, golden, 'cpu');
-  studio.frame(theirs.cloth.geometry.boundingSphere!.clone().applyMatrix4(theirs.cloth.matrixWorld));
   const before = { backend: ours.cloth.backend, zeroCopy: ours.cloth.zeroCopy };
   const pictures = [];
   let bounded = true;
@@ -105,6 +115,7 @@ export async function drawn(golden: Golden) {
     for (const { character } of [ours, theirs]) strike(character, pose);
     await settle(ours.cloth);
     theirs.cloth.update();
+    studio.frame(theirs.cloth);
     ours.cloth.visible = true;
     theirs.cloth.visible = false;
     const fromBuffer = await studio.picture();
@@ -112,6 +123,7 @@ export async function drawn(golden: Golden) {
     const nothing = await studio.picture();
     theirs.cloth.visible = true;
     const fromArrays = await studio.picture();
+    show(fromBuffer, fromArrays);
     pictures.push({ difference: apart(fromBuffer, fromArrays), covered: apart(fromArrays, nothing) });
     bounded &&= holds(ours.cloth.geometry.boundingSphere!, theirs.cloth.geometry.getAttribute('position').array as Float32Array);
   }
@@ -144,7 +156,7 @@ export async function control(golden: Golden) {
   const studio = await Studio.open();
   const share = async (renderer?: THREE.WebGPURenderer) => {
     const { model, cloth } = await dress(studio, golden, 'webgpu', renderer);
-    studio.frame(cloth.geometry.boundingSphere!.clone().applyMatrix4(cloth.matrixWorld));
+    studio.frame(cloth);
     const buffers: ClothBuffers[] = [];
     const create = model.createBuffers.bind(model);
     model.createBuffers = async () => (buffers.push(await create()), buffers.at(-1)!);
@@ -166,7 +178,9 @@ export async function control(golden: Golden) {
   // Without its buffer: three makes one of the array, which is empty.
   const { model, cloth } = await dress(studio, golden, 'cpu');
   const whole = await studio.picture();
-  for (const name of ['position', 'normal']) (cloth.geometry.getAttribute(name) as THREE.BufferAttribute).array.fill(0);
+  const position = cloth.geometry.getAttribute('position') as THREE.BufferAttribute;
+  position.array.fill(0);
+  position.needsUpdate = true;
   const missing = apart(whole, await studio.picture());
   cloth.dispose();
   model.dispose();
@@ -179,7 +193,7 @@ export async function control(golden: Golden) {
 export async function twins(golden: Golden) {
   const studio = await Studio.open();
   const { model, cloth } = await dress(studio, golden, 'webgpu', studio.renderer);
-  studio.frame(cloth.geometry.boundingSphere!.clone().applyMatrix4(cloth.matrixWorld));
+  studio.frame(cloth);
   const twin = cloth.clone();
   twin.castShadow = true;
   studio.scene.add(twin);
