@@ -23,7 +23,7 @@ const PAIRS = {
 /** Poses of a dataset, evenly spread over the frames of its clips at `RATE` a second. A full one goes into the same folder. */
 const POSES = { small: 64, full: 1250 };
 const RATE = 10;
-const VERTICES = '2500';
+const VERTICES = '2100';
 /** Poses simulated twice for the noise floor. */
 const TWINS = '8';
 

@@ -28,12 +28,12 @@ struct Params {
 
 const SIZE = 64u;
 const BLOCK = 8u;
-const FEATURES = 2048u;
-
+// Features of a vertex: the less room, the more vertices at a time.
+override room: u32 = 2048;
 var<workgroup> sums: array<f32, SIZE * BLOCK>;
-var<workgroup> attended: array<f32, FEATURES>;
+var<workgroup> attended: array<f32, room>;
 
-// Sums over groups of `lanes` invocations; every invocation finds its group's in the group's first place.
+// Sums over groups of `lanes` invocations, left in the group's first place.
 fn reduce(t: u32, lanes: u32, blocks: u32) {
     for (var half = lanes / 2u; half > 0u; half /= 2u) {
         workgroupBarrier();
@@ -46,19 +46,20 @@ fn reduce(t: u32, lanes: u32, blocks: u32) {
     workgroupBarrier();
 }
 
-// k_c + ε_c (part 1) or v_c + ε_c (part 2) of neighbour j at feature f; `edge` is e_ij.
-fn with_edge(part: u32, j: u32, f: u32, edge: mat2x3<f32>) -> f32 {
-    let term = dot(weights[3u * f].xyz, edge[0]) + dot(weights[3u * f + 1u].xyz, edge[1]);
-    return projected[(4u * j + part) * params.features + f] + term;
-}
-
-fn edge_of(i: u32, j: u32) -> mat2x3<f32> {
-    return mat2x3((potentials[2u * j] - potentials[2u * i]).xyz, (potentials[2u * j + 1u] - potentials[2u * i + 1u]).xyz);
+// The sum of `value` over the workgroup.
+fn total(t: u32, value: f32) -> f32 {
+    workgroupBarrier();
+    sums[t] = value;
+    reduce(t, SIZE, 1u);
+    return sums[0];
 }
 
 // One head's attention for vertex i: features `first`, and every `lanes`th after it, below `end`.
 fn attention(i: u32, t: u32, first: u32, end: u32) {
     let group = t / params.lanes * params.lanes;
+    for (var f = first; f < end; f += params.lanes) {
+        attended[f] = 0.0;
+    }
     var largest = -1e30;
     var sum = 0.0;
     for (var start = offsets[i]; start < offsets[i + 1u]; start += BLOCK) {
@@ -73,12 +74,11 @@ fn attention(i: u32, t: u32, first: u32, end: u32) {
             sums[e * SIZE + t] = product * params.scale;
         }
         reduce(t, params.lanes, count);
-        var highest = largest;
+        let before = largest;
         for (var e = 0u; e < count; e++) {
-            highest = max(highest, sums[e * SIZE + group]);
+            largest = max(largest, sums[e * SIZE + group]);
         }
-        let shrink = exp(largest - highest);
-        largest = highest;
+        let shrink = exp(before - largest);
         sum *= shrink;
         for (var f = first; f < end; f += params.lanes) {
             attended[f] *= shrink;
@@ -116,5 +116,5 @@ fn attend(
         attention(i, t, first, min((head + 1u) * d, params.features));
     }
     workgroupBarrier();
-    gate(i, t);
+    gate(i, t, 0u);
 }

@@ -1,7 +1,7 @@
 //! The network's operations in WGSL, one per file, each the twin of the file of the same name in `crate/core/src/cpu`.
 //! This table says what the host must know of each: text, bindings, and `Params`, whose WGSL a test compares with the Rust.
 //!
-//! `NAME.VARIANT.wgsl` computes what `NAME.wgsl` does, for operands of a special shape. Rows that are read as vec4 are padded
+//! `NAME.VARIANT.wgsl` computes what `NAME.wgsl` does, for operands or adapters of a special kind; `NAME.edge.wgsl` is a part of both. Rows that are read as vec4 are padded
 //! with zeros to whole vec4; [n, 3] is not padded, so that it can be a vertex attribute as it is.
 
 /// How a shader uses a storage buffer.
@@ -110,7 +110,9 @@ macro_rules! shaders {
 
 shaders! {
     /// Attention over the neighbours, gate and LayerNorm: offsets, neighbours, projected, potentials, weights -> output.
-    ATTEND: Attend, "attend" + ["gate"], [Read Read Read Read Read Write], [1, 1];
+    ATTEND: Attend, "attend" + ["attend.edge", "gate"], [Read Read Read Read Read Write], [1, 1];
+    /// The same without barriers, and with room for what is attended to.
+    ATTEND_VERTEX: Attend, "attend.vertex" + ["attend.edge", "gate"], [Read Read Read Read Read Write Write], [64, 1];
     /// Σ_j w_j B_j: weights, basis, rest -> residual, result.
     BLEND: Blend, "blend" + [], [Read Read Read Write Write], [64, 1];
     /// Joints, inverse bind, mean and deviation -> transforms, pose vector.
@@ -129,7 +131,9 @@ shaders! {
     SURFACE: Surface, "surface" + [], [Read Read Read Write Write], [64, 1];
 }
 
-/// Most features of a graph layer: what attend.wgsl holds in workgroup memory.
+/// The override of attend.wgsl that says how many features it holds in workgroup memory.
+pub const ROOM: &str = "room";
+/// The most that may be.
 pub const MAX_FEATURES: usize = 2048;
 /// Invocations of a workgroup of attend.wgsl.
 pub const LANES: usize = 64;

@@ -2,3 +2,4 @@
 
 pub mod finite;
 pub mod golden;
+pub mod random;

@@ -113,14 +113,20 @@ fn every_operation_has_its_twins() {
     let functions = body.lines().filter_map(|line| line.strip_prefix("    fn ")?.split('(').next());
     // Storage is no operation. What follows the network, and what feeds it from the pose alone, needs no gradient.
     let operations: Vec<&str> = functions.filter(|name| !["buffer", "indices", "write"].contains(name)).collect();
-    for known in ["linear", "blend", "add", "skin", "attend", "gate"] {
+    for known in ["linear", "blend", "skin", "attend", "normals"] {
         assert!(operations.contains(&known), "trait Device has no {known}");
     }
     for operation in &operations {
         assert!(has(&format!("crate/core/src/cpu/{operation}.rs")), "{operation} has no file in crate/core/src/cpu");
         let gradient = has(&format!("crate/author/src/train/gradient/{operation}.rs"));
-        let wanted = !["features", "normals"].contains(operation);
+        let wanted = !["body_frame", "features", "normals", "surface"].contains(operation);
         assert_eq!(gradient, wanted, "{operation}: a file in crate/author/src/train/gradient");
+        assert!(has(&format!("shaders/{operation}.wgsl")), "{operation} has no shader");
+    }
+    // And each shader, NAME.wgsl or NAME.VARIANT.wgsl, has its twin.
+    let shaders = tree.iter().filter_map(|source| source.path.strip_prefix("shaders/")?.strip_suffix(".wgsl"));
+    for name in shaders.filter_map(|file| file.split('.').next()) {
+        assert!(has(&format!("crate/core/src/cpu/{name}.rs")), "{name}.wgsl has no twin in crate/core/src/cpu");
     }
 }
 
@@ -218,7 +224,9 @@ fn the_module_holds_no_authoring() {
     let list = say(env!("CARGO"), &[&arguments[..], &["--target", "wasm32-unknown-unknown"]].concat());
     let packages: Vec<&str> = list.lines().filter_map(|line| line.split(' ').next()).collect();
     assert!(packages.contains(&"ctsn-core") && packages.contains(&"wasm-bindgen"), "{packages:?}");
-    for package in ["ctsn-author", "ctsn-tests", "gltf", "faer", "clap", "rayon", "image", "serde_json"] {
+    for package in
+        ["ctsn-author", "ctsn-tests", "gltf", "faer", "clap", "rayon", "image", "serde_json", "naga", "wgpu-core"]
+    {
         assert!(!packages.contains(&package), "ctsn-wasm depends on {package}");
     }
 }

@@ -90,6 +90,8 @@ pub struct Report {
     pub least_distance: f64,
     /// Cloth inside the body in kept poses.
     pub penetration: Penetration,
+    /// Vertices that the body pinched and that were moved out of it, in all kept poses, and poses with such a vertex.
+    pub lifted: [usize; 2],
     /// Pairs of triangles that cross each other in kept poses.
     pub crossings: usize,
     /// How far the truth moves when the pose hardly does; null when it was not measured.
@@ -134,6 +136,10 @@ impl Report {
             stretch: over(|record| record.stretch),
             least_distance: if kept > 0 { 1e3 * least } else { 0.0 },
             penetration: penetration(&dataset)?,
+            lifted: [
+                samples.iter().map(|sample| sample.record.lifted).sum(),
+                samples.iter().filter(|sample| sample.record.lifted > 0).count(),
+            ],
             crossings: samples.iter().map(|sample| sample.record.crossings).sum(),
             noise_floor: noise_floor(&dataset, folder)?,
             character: description.character,
@@ -206,6 +212,8 @@ impl std::fmt::Display for Report {
         let Penetration { vertices, poses, depth } = self.penetration;
         writeln!(f, "  body         nearest vertex {:.2} mm in the simulation;", self.least_distance)?;
         writeln!(f, "               {vertices} vertices inside in {poses} poses, at most {depth:.2} mm deep")?;
+        let [lifted, of] = self.lifted;
+        writeln!(f, "               {lifted} vertices pinched by it, moved out, in {of} poses")?;
         writeln!(f, "  cloth        {} pairs of triangles cross each other", self.crossings)?;
         match &self.noise_floor {
             Some(floor) => write!(f, "{floor}"),

@@ -25,16 +25,20 @@ fn inspect_and_predict_agree_with_the_golden_file() {
     for part in ["24 vertices, 36 triangles", "hip, leg0, leg1", "m = 4", "2 heads × 4", "k = 8", "skeleton.basis"] {
         assert!(shown.contains(part), "wanted {part:?} in {shown}");
     }
-    folder.accepts("predict tiny.safetensors poses.safetensors -o out.safetensors");
-    let out = Tensors::parse(&std::fs::read(folder.path("out.safetensors")).expect("a prediction")).expect("tensors");
     let shape = [Some(4), Some(24), Some(3)];
-    let found = out.f32("positions", &shape).expect("positions").0;
-    out.f32("normals", &shape).expect("normals");
     let wanted = golden.f32("expected.positions", &shape).expect("golden positions").0;
     let tolerances: Value = serde_json::from_str(&golden.metadata["tolerance"]).expect("tolerances");
     let tolerance = tolerances["positions"].as_f64().expect("a tolerance") as f32;
-    for (element, (found, wanted)) in found.iter().zip(&wanted).enumerate() {
-        assert!((found - wanted).abs() <= tolerance, "element {element}: wanted {wanted}, found {found}");
+    for device in ["cpu", "gpu"] {
+        folder
+            .accepts(&format!("predict tiny.safetensors poses.safetensors --device {device} -o {device}.safetensors"));
+        let out = std::fs::read(folder.path(&format!("{device}.safetensors"))).expect("a prediction");
+        let out = Tensors::parse(&out).expect("tensors");
+        let found = out.f32("positions", &shape).expect("positions").0;
+        out.f32("normals", &shape).expect("normals");
+        for (element, (found, wanted)) in found.iter().zip(&wanted).enumerate() {
+            assert!((found - wanted).abs() <= tolerance, "{device}, element {element}: wanted {wanted}, found {found}");
+        }
     }
 }
 

@@ -1,14 +1,17 @@
 //! A GPU: device and queue, made by us or lent to us, with one pipeline per shader.
 
 use crate::{Error, Result};
-use ctsn_shaders::{Access, Shader};
+use ctsn_shaders::{self as shaders, Access, Shader};
 use futures_channel::oneshot;
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// A device that models are loaded on; clones are the same device.
 #[derive(Clone)]
-pub struct Gpu(Arc<Inner>);
+pub struct Gpu {
+    inner: Arc<Inner>,
+    software: bool,
+}
 
 struct Inner {
     device: wgpu::Device,
@@ -16,7 +19,7 @@ struct Inner {
     name: String,
     own: bool,
     loss: Arc<Mutex<Loss>>,
-    pipelines: Mutex<HashMap<&'static str, Pipeline>>,
+    pipelines: Mutex<HashMap<(&'static str, Option<u32>), Pipeline>>,
 }
 
 /// Whether the device is gone, and who wants to know.
@@ -93,12 +96,14 @@ impl Gpu {
         };
         let (device, queue) = adapter.request_device(&descriptor).await.map_err(refused)?;
         let gpu = Self::wrap(device, queue, own);
-        let loss = gpu.0.loss.clone();
-        gpu.0.device.set_device_lost_callback(move |reason, message| lose(&loss, &format!("{reason:?}: {message}")));
+        let loss = gpu.inner.loss.clone();
+        gpu.inner
+            .device
+            .set_device_lost_callback(move |reason, message| lose(&loss, &format!("{reason:?}: {message}")));
         if own {
             // What nobody asked about, such as memory running out in a frame, must not end the process.
-            let loss = gpu.0.loss.clone();
-            gpu.0.device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| lose(&loss, &error.to_string())));
+            let loss = gpu.inner.loss.clone();
+            gpu.inner.device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| lose(&loss, &error.to_string())));
         }
         Ok(gpu)
     }
@@ -106,38 +111,50 @@ impl Gpu {
     fn wrap(device: wgpu::Device, queue: wgpu::Queue, own: bool) -> Self {
         let info = device.adapter_info();
         let name = if info.name.is_empty() { info.backend.to_string() } else { info.name };
-        Self(Arc::new(Inner { device, queue, name, own, loss: Arc::default(), pipelines: Mutex::default() }))
+        let software = info.device_type == wgpu::DeviceType::Cpu;
+        let (loss, pipelines) = (Arc::default(), Mutex::default());
+        Self { inner: Arc::new(Inner { device, queue, name, own, loss, pipelines }), software }
     }
 
     /// Name of the adapter, or of its interface where that is kept secret.
     pub fn name(&self) -> &str {
-        &self.0.name
+        &self.inner.name
     }
 
     /// The device.
     pub fn device(&self) -> &wgpu::Device {
-        &self.0.device
+        &self.inner.device
     }
 
     /// Its queue.
     pub fn queue(&self) -> &wgpu::Queue {
-        &self.0.queue
+        &self.inner.queue
+    }
+
+    /// Whether the adapter computes on the processor: models loaded on this handle then use shaders without barriers.
+    pub fn is_software(&self) -> bool {
+        self.software
+    }
+
+    /// This device with the shaders meant for a software adapter, or for none: so that one machine can test both.
+    pub fn treated_as_software(&self, software: bool) -> Self {
+        Self { inner: self.inner.clone(), software }
     }
 
     /// Whether stages can be timed.
     pub fn has_timestamps(&self) -> bool {
-        self.0.device.features().contains(wgpu::Features::TIMESTAMP_QUERY)
+        self.inner.device.features().contains(wgpu::Features::TIMESTAMP_QUERY)
     }
 
     /// Why the device is lost, if it is.
     pub fn lost(&self) -> Option<String> {
-        lock(&self.0.loss).reason.clone()
+        lock(&self.inner.loss).reason.clone()
     }
 
     /// Waits until the device is lost; why. Ends with `None` when the last handle to the device is dropped.
     pub fn until_lost(&self) -> impl Future<Output = Option<String>> + use<> {
         let (sender, receiver) = oneshot::channel();
-        let mut loss = lock(&self.0.loss);
+        let mut loss = lock(&self.inner.loss);
         match &loss.reason {
             Some(reason) => drop(sender.send(reason.clone())),
             None => loss.waiting.push(sender),
@@ -154,7 +171,7 @@ impl Gpu {
     pub(crate) async fn scoped<T>(&self, work: impl FnOnce() -> Result<T>) -> Result<T> {
         self.check()?;
         let scopes = [wgpu::ErrorFilter::OutOfMemory, wgpu::ErrorFilter::Validation, wgpu::ErrorFilter::Internal]
-            .map(|filter| self.0.device.push_error_scope(filter));
+            .map(|filter| self.inner.device.push_error_scope(filter));
         let result = work();
         // The scopes are a stack: all leave it at once, last in, first out.
         let errors: Vec<_> = scopes.into_iter().rev().map(wgpu::ErrorScopeGuard::pop).collect();
@@ -167,12 +184,13 @@ impl Gpu {
     }
 
     /// The compiled shader, compiled at its first use.
-    pub(crate) fn pipeline(&self, shader: &'static Shader) -> Pipeline {
-        lock(&self.0.pipelines).entry(shader.name).or_insert_with(|| compile(&self.0.device, shader)).clone()
+    pub(crate) fn pipeline(&self, shader: &'static Shader, room: Option<u32>) -> Pipeline {
+        let compiled = || compile(&self.inner.device, shader, room);
+        lock(&self.inner.pipelines).entry((shader.name, room)).or_insert_with(compiled).clone()
     }
 }
 
-fn compile(device: &wgpu::Device, shader: &Shader) -> Pipeline {
+fn compile(device: &wgpu::Device, shader: &Shader, room: Option<u32>) -> Pipeline {
     let label = Some(shader.name);
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label,
@@ -194,12 +212,17 @@ fn compile(device: &wgpu::Device, shader: &Shader) -> Pipeline {
         bind_group_layouts: &[Some(&layout)],
         immediate_size: 0,
     });
+    let constants: Vec<_> = room.map(|room| (shaders::ROOM, f64::from(room))).into_iter().collect();
     let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
         label,
         layout: Some(&pipeline_layout),
         module: &module,
         entry_point: Some(shader.entry()),
-        compilation_options: wgpu::PipelineCompilationOptions::default(),
+        // No shader reads workgroup memory that it did not write.
+        compilation_options: wgpu::PipelineCompilationOptions {
+            constants: &constants,
+            zero_initialize_workgroup_memory: false,
+        },
         cache: None,
     });
     Pipeline { pipeline, layout }

@@ -75,7 +75,7 @@ fn record(gpu: &Gpu, model: &HostModel) -> Result<Model> {
     };
     let frames = [one(Streams::Both)?, one(Streams::Skeleton)?, one(Streams::None)?];
     for dispatch in frames.iter().flatten() {
-        gpu.pipeline(dispatch.shader);
+        gpu.pipeline(dispatch.shader, dispatch.room);
     }
     let room = |id| recorder.room(id).unwrap_or_else(|| unreachable!("every frame writes it"));
     let (joints, positions, normals) = (room(a.joints), room(a.positions), room(a.normals));

@@ -24,12 +24,12 @@ pub(crate) struct Step {
     groups: [u32; 2],
 }
 
-/// A prediction read back.
+/// A prediction read back: of the cloth's n vertices, or of the d drawn ones.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prediction {
-    /// Positions [n, 3], world, metres.
+    /// Positions, three numbers each, world, metres.
     pub positions: Vec<f32>,
-    /// Unit vertex normals [n, 3].
+    /// Unit vertex normals, three numbers each.
     pub normals: Vec<f32>,
 }
 
@@ -43,8 +43,11 @@ impl Predictor {
         let mut predictor = gpu.scoped(|| Ok(Self::make(model))).await?;
         let rest: Vec<f32> = model.rig().joints.iter().flat_map(|_| IDENTITY).collect();
         predictor.predict_row_major(&rest, Streams::Both)?;
-        predictor.stages().await?;
-        Ok(predictor)
+        match predictor.read().await {
+            // A model may well overflow in a pose of our making.
+            Ok(_) | Err(Error::Core(_)) => Ok(predictor),
+            Err(error) => Err(error),
+        }
     }
 
     fn make(model: &Model) -> Self {
@@ -143,7 +146,18 @@ impl Predictor {
     /// # Errors
     /// [`Error::Lost`]; a prediction that is not finite.
     pub fn read(&self) -> impl Future<Output = Result<Prediction>> + use<> {
-        let buffers = [self.positions(), self.normals()];
+        self.read_both([self.positions(), self.normals()])
+    }
+
+    /// As [`Self::read`], of the drawn vertices [d, 3].
+    ///
+    /// # Errors
+    /// [`Error::Lost`]; a prediction that is not finite.
+    pub fn read_drawn(&self) -> impl Future<Output = Result<Prediction>> + use<> {
+        self.read_both([self.drawn_positions(), self.drawn_normals()])
+    }
+
+    fn read_both(&self, buffers: [&wgpu::Buffer; 2]) -> impl Future<Output = Result<Prediction>> + use<> {
         let read = self.reader.read::<f32>(self.model.gpu(), &buffers);
         async move {
             let mut results = read.await?;
@@ -180,7 +194,7 @@ impl Predictor {
 
 impl Step {
     fn new(gpu: &Gpu, dispatch: &Dispatch, constants: &[wgpu::Buffer], activations: &[wgpu::Buffer]) -> Self {
-        let pipeline = gpu.pipeline(dispatch.shader);
+        let pipeline = gpu.pipeline(dispatch.shader, dispatch.room);
         let operand = |operand: &Operand| match operand {
             Operand::Constant(constant) => &constants[*constant],
             Operand::Activation(room) => &activations[*room],

@@ -29,6 +29,8 @@ pub(crate) struct Dispatch {
     pub stage: String,
     /// Uniform buffer.
     pub params: wgpu::Buffer,
+    /// Features to hold in workgroup memory, where the shader does so.
+    pub room: Option<u32>,
     pub operands: Vec<Operand>,
     /// Workgroups by x and y.
     pub groups: [u32; 2],

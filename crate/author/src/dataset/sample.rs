@@ -29,6 +29,8 @@ pub struct Record {
     pub distance: f64,
     /// Pairs of cloth triangles that cross each other.
     pub crossings: usize,
+    /// Vertices that were moved out of the body at the end.
+    pub lifted: usize,
 }
 
 impl Record {
@@ -50,6 +52,7 @@ impl Record {
             stretch: finite(outcome.stretch_max),
             distance: finite(outcome.least_distance),
             crossings: outcome.crossings,
+            lifted: outcome.lifted,
         }
     }
 }

@@ -10,6 +10,10 @@ use crate::rig::{Character, Mesh, Pose};
 /// Joints whose part of the body is further than this from the garment in the canonical pose are left out, metres.
 const REACH: f64 = 0.3;
 
+/// A vertex that is moved out of the body ends this far from it, metres, or on the way between two of its parts after so many moves.
+const CLEAR: f64 = 5e-4;
+const MOVES: usize = 8;
+
 /// A body prepared for distance queries.
 pub struct BodyDistance {
     character: Character,
@@ -29,5 +33,26 @@ impl BodyDistance {
         let body = self.collider.pose(&self.character.skinning(&to_body_frame(&self.character, pose)));
         let distance = |vertex: &DVec3| body.closest(*vertex, None, 0.5).map_or(f64::INFINITY, |hit| hit.distance);
         vertices.iter().map(distance).collect()
+    }
+
+    /// Moves vertices [n] (body frame, metres) that lie inside the body in `pose` (world) out of it, where that takes at most `limit`
+    /// metres; how many were moved.
+    pub fn lift(&self, pose: &Pose, vertices: &mut [DVec3], limit: f64) -> usize {
+        let body = self.collider.pose(&self.character.skinning(&to_body_frame(&self.character, pose)));
+        let mut moved = 0;
+        for vertex in vertices {
+            let mut place = *vertex;
+            for _ in 0..MOVES {
+                match body.closest(place, None, 0.5).filter(|hit| hit.distance < 0.0) {
+                    Some(hit) => place += hit.normal * (CLEAR - hit.distance),
+                    None => break,
+                }
+            }
+            if place != *vertex && place.distance(*vertex) <= limit {
+                *vertex = place;
+                moved += 1;
+            }
+        }
+        moved
     }
 }

@@ -40,8 +40,6 @@ pub(super) struct Probe {
     pub residual: f64,
     /// Least signed distance, metres (infinite without contact).
     pub least_distance: f64,
-    /// Vertices inside the body.
-    pub inside: usize,
     /// RMS move of the vertices over the last [`WINDOW`] iterations of a relaxation, metres; infinite before.
     pub drift: f64,
 }
@@ -70,8 +68,6 @@ pub(super) struct Solver<'a> {
     resting: bool,
     /// Whether the Hessian is exact rather than convexified.
     exact: bool,
-    /// Vertices inside the body at the last detection.
-    inside: usize,
     /// Iterations so far.
     pub iterations: usize,
     gradient: Vec<DVec3>,
@@ -105,7 +101,6 @@ impl<'a> Solver<'a> {
             pins: Vec::new(),
             resting: false,
             exact: false,
-            inside: 0,
             iterations: 0,
             gradient: vec![DVec3::ZERO; n],
             stiffness: vec![settings.contact_stiffness; n],
@@ -129,7 +124,7 @@ impl<'a> Solver<'a> {
         self.assemble(h);
         let square: f64 = self.gradient.iter().map(|g| g.length_squared()).sum();
         let residual = (square / self.gradient.len() as f64).sqrt() / self.cloth.mean_weight();
-        Probe { residual, least_distance, inside: self.inside, drift: f64::INFINITY }
+        Probe { residual, least_distance, drift: f64::INFINITY }
     }
 
     #[cfg(test)]

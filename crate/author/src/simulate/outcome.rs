@@ -34,6 +34,8 @@ pub struct Outcome {
     pub stretch_max: f64,
     /// Least signed distance of a vertex to the body, metres; negative inside. Infinite where nothing touches.
     pub least_distance: f64,
+    /// Vertices that the body pinched and that were moved out of it at the end, by at most [`Settings::lift`](super::Settings).
+    pub lifted: usize,
     /// Newton iterations taken.
     pub iterations: usize,
     /// Whether the pose may be used.

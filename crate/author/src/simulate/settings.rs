@@ -26,8 +26,8 @@ pub struct Settings {
     /// Move over the last iterations under which a pose counts as settled although the residual is larger, metres RMS: forces at
     /// stiff contacts flicker where the cloth no longer moves.
     pub drift: f64,
-    /// Share of vertices that may be caught inside the body, where a skinned body cuts into itself.
-    pub caught: f64,
+    /// How far a vertex that the body pinches may be moved at the end to lie outside of it, metres; a pose that needs more is left out.
+    pub lift: f64,
     /// Largest principal stretch a pose may have anywhere; above it the cloth is caught in the body.
     pub stretch_limit: f64,
     /// Cloth vertices sprung to the body, as a waistband or a collar is.
@@ -49,8 +49,8 @@ impl Default for Settings {
             relax_iterations: 200,
             residual: 1e-2,
             drift: 1e-4,
-            caught: 0.02,
-            stretch_limit: 2.5,
+            lift: 0.005,
+            stretch_limit: 1.5,
             attached: Vec::new(),
             attachment: 10.0,
         }
@@ -71,7 +71,7 @@ impl Settings {
             ("relax_iterations", self.relax_iterations as f64, 1.0, 1e6),
             ("residual", self.residual, 1e-9, 1e3),
             ("drift", self.drift, 0.0, 1.0),
-            ("caught", self.caught, 0.0, 1.0),
+            ("lift", self.lift, 0.0, 1.0),
             ("stretch_limit", self.stretch_limit, 1.0, f64::MAX),
             ("attachment", self.attachment, 0.0, 1e6),
         ];

@@ -96,17 +96,17 @@ fn skin() {
 #[test]
 fn attend() {
     let sizes = Sizes { vertices: 5, joints: 3, embedding: 4, basis: 6, features: 8, heads: 2 };
-    let lengths = [5 * 32, 6 * 8, 24, 8, 8, 5 * 6, 32 * 32, 32];
-    check_operation(&lengths, 3, 5 * 8, |tape, ids, y| {
+    let lengths = [5 * 4, 4 * 32, 32, 6 * 8, 24, 8, 8, 5 * 6];
+    check_operation(&lengths, 1, 5 * 8, |tape, ids, y| {
         let graph = strip();
         let graph = Graph { offsets: tape.indices(&graph.offsets), neighbours: tape.indices(&graph.neighbours) };
         // Attention changes its input, so that must be an activation.
         let mut projected = tape.buffer(&[0.0; 5 * 32]);
-        let project = Linear { weight: ids[6], bias: ids[7], inputs: 32, outputs: 32 };
+        let project = Linear { weight: ids[1], bias: ids[2], inputs: 4, outputs: 32 };
         tape.linear(&ids[0], &project, Activation::None, &mut projected);
         let mut attended = tape.buffer(&[0.0; 5 * 8]);
-        let layer = layer(ids[1], ids[2], ids[3], ids[4]);
-        tape.attend(&graph, sizes, &mut projected, &ids[5], &layer, &mut attended, y);
+        let layer = layer(ids[3], ids[4], ids[5], ids[6]);
+        tape.attend(&graph, sizes, &mut projected, &ids[7], &layer, &mut attended, y);
     });
 }
 

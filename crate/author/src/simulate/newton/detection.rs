@@ -40,7 +40,6 @@ impl Solver<'_> {
         let thickness = self.settings.thickness;
         let room = 2.0 * thickness + self.cloth.gap;
         self.contacts.clear();
-        self.inside = 0;
         let Some(body) = body else { return least };
         for i in 0..self.positions.len() {
             if self.clearance[i] > thickness + MARGIN || self.resting && self.pinched[i] {
@@ -56,7 +55,6 @@ impl Solver<'_> {
                 continue;
             }
             least = least.min(hit.distance);
-            self.inside += usize::from(hit.distance < 0.0);
             let limit = STIFFEST * self.settings.contact_stiffness;
             if hit.distance < 0.25 * thickness && self.stiffness[i] < limit {
                 self.stiffness[i] *= STIFFENING;

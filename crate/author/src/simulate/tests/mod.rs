@@ -5,6 +5,7 @@ mod cusick;
 mod energy;
 mod fabric;
 mod friction;
+mod hostile;
 mod layers;
 mod pose;
 mod scene;

@@ -6,7 +6,7 @@ use super::scene::{legs, skirt};
 use crate::rig::{Character, Garment, Mesh, Pose};
 use crate::simulate::{Material, Settings, Simulator, Status, body_frame, path, to_body_frame};
 
-fn simulator(character: &Character, mesh: Mesh, around: u32) -> crate::Result<Simulator> {
+pub fn simulator(character: &Character, mesh: Mesh, around: u32) -> crate::Result<Simulator> {
     let settings = Settings { attached: (0..around).collect(), ..Settings::default() };
     Simulator::new(character, &Garment { mesh, ..Garment::default() }, Material::default(), settings)
 }
