@@ -83,6 +83,7 @@ describe.each(['newest', 'oldest'] as const)('three.js, the %s of the peer range
       expect(covered).toBeGreaterThan(0.05);
       expect(difference).toBeLessThan(0.002);
     }
+    expect(result.shadow).toBeGreaterThan(0.01);
     // Never uploaded: the array holds an earlier frame.
     expect(result.arrays).toBeGreaterThan(0.01);
   });

@@ -13,16 +13,17 @@ class Studio {
   readonly target = new THREE.RenderTarget(width, height);
   readonly errors: string[] = [];
 
+  readonly #sun = new THREE.DirectionalLight(0xffffff, 3);
+  readonly #floor = new THREE.Mesh(new THREE.PlaneGeometry(8, 8).rotateX(-Math.PI / 2), new THREE.MeshStandardNodeMaterial({ color: 0xbbbbbb }));
+
   private constructor(readonly renderer: THREE.WebGPURenderer) {
-    const sun = new THREE.DirectionalLight(0xffffff, 3);
-    sun.position.set(1, 2, 1.5);
-    sun.castShadow = true;
-    Object.assign(sun.shadow.camera, { left: -2, right: 2, top: 2, bottom: -2, far: 20 });
     renderer.shadowMap.enabled = true;
-    const floor = new THREE.Mesh(new THREE.PlaneGeometry(8, 8).rotateX(-Math.PI / 2), new THREE.MeshStandardNodeMaterial({ color: 0xbbbbbb }));
-    floor.receiveShadow = true;
+    this.#sun.castShadow = true;
+    Object.assign(this.#sun.shadow.camera, { left: -2, right: 2, top: 2, bottom: -2, far: 20 });
+    this.#sun.shadow.normalBias = 0.03;
+    this.#floor.receiveShadow = true;
     this.scene.background = new THREE.Color(0x203040);
-    this.scene.add(sun, new THREE.AmbientLight(0xffffff, 0.4), floor);
+    this.scene.add(this.#sun, this.#sun.target, new THREE.AmbientLight(0xffffff, 0.4), this.#floor);
   }
 
   static async open(): Promise<Studio> {
@@ -38,15 +39,20 @@ class Studio {
     return studio;
   }
 
-  /** Looks at a cloth drawn from arrays, from the front and above. */
+  /** Looks at a cloth drawn from arrays, from the front and above; its shadow falls to the right. */
   frame(cloth: Cloth): void {
     const { center, radius } = cloth.geometry.boundingSphere!.clone().applyMatrix4(cloth.matrixWorld);
     this.camera.position.set(center.x + 0.5 * radius, center.y + radius, center.z + 2.5 * radius);
     this.camera.lookAt(center);
+    this.#floor.position.copy(center).setY(center.y - radius);
+    this.#sun.position.copy(center).add(new THREE.Vector3(-2, 3, 0.5));
+    this.#sun.target.position.copy(center);
   }
 
   /** The pixels of the scene, and the scene on the page. */
   async picture(): Promise<Uint8Array> {
+    // Shadows are drawn once a frame, and a frame is one of the page's.
+    await new Promise(requestAnimationFrame);
     this.renderer.setRenderTarget(this.target);
     this.renderer.render(this.scene, this.camera);
     const pixels = await this.renderer.readRenderTargetPixelsAsync(this.target, 0, 0, width, height);
@@ -109,6 +115,8 @@ export async function drawn(golden: Golden) {
   const ours = await dress(studio, golden, 'webgpu', studio.renderer);
   const theirs = await dress(studio, golden, 'cpu');
   const before = { backend: ours.cloth.backend, zeroCopy: ours.cloth.zeroCopy };
+  // The first frame of r170 is without shadows.
+  await studio.picture();
   const pictures = [];
   let bounded = true;
   for (const pose of golden.poses) {
@@ -130,9 +138,12 @@ export async function drawn(golden: Golden) {
   theirs.cloth.visible = false;
   ours.cloth.visible = true;
   const zeroCopy = ours.cloth.zeroCopy;
+  const lit = await studio.picture();
+  ours.cloth.castShadow = false;
+  const shadow = apart(lit, await studio.picture());
   // The array three would have uploaded is not what was drawn.
   const arrays = difference(ours.cloth.geometry.getAttribute('position').array as Float32Array, theirs.cloth.geometry.getAttribute('position').array as Float32Array);
-  const result = { before, zeroCopy, pictures, bounded, arrays, sameDevice: ours.model.device === device, errors: studio.errors };
+  const result = { before, zeroCopy, pictures, shadow, bounded, arrays, sameDevice: ours.model.device === device, errors: studio.errors };
   for (const { cloth, model } of [ours, theirs]) {
     cloth.dispose();
     model.dispose();
