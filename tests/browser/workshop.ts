@@ -2,7 +2,7 @@
 import { fileURLToPath } from 'node:url';
 import { chromium as playwright, type Browser, type Page } from 'playwright-core';
 import { createServer, type ViteDevServer } from 'vite';
-import { chromium, flags } from '../../scripts/browser.mjs';
+import { chromium, environment, flags } from '../../scripts/browser.mjs';
 import type { tasks } from './webgpu/main.js';
 
 type Tasks = typeof tasks;
@@ -28,7 +28,7 @@ export class Workshop {
   }
 
   static async open(): Promise<Workshop> {
-    const shop = new Workshop(await playwright.launch({ executablePath: chromium(), args: flags() }));
+    const shop = new Workshop(await playwright.launch({ executablePath: chromium(), args: flags(), env: environment() }));
     await shop.open('newest');
     return shop;
   }
