@@ -81,7 +81,7 @@ pub fn pose(rng: &mut Rng, joints: usize) -> Vec<f32> {
 
 fn rig(rng: &mut Rng, joints: usize) -> Rig {
     Rig {
-        frame: if joints % 2 == 0 { Frame::Hip } else { Frame::HipYaw },
+        frame: if joints.is_multiple_of(2) { Frame::Hip } else { Frame::HipYaw },
         root: joints / 2,
         joints: (0..joints).map(|j| format!("joint {j}")).collect(),
         inverse_bind: (0..joints).map(|_| transform(rng)).collect(),
