@@ -33,7 +33,7 @@ test('buffers without read-back, one prediction on the CPU, streams, refusals', 
 });
 
 test('auto takes the faster one, by its own measurement', async () => {
-  for (const { measured, backend, fallback } of await shop.run('auto', ['tiny', 'small'])) {
+  for (const { measured, backend, fallback } of await shop.run('auto', ['small', 'small_f16'])) {
     expect(measured!.cpu).toBeGreaterThan(0);
     expect(measured!.webgpu).toBeGreaterThan(0);
     expect(backend).toBe(measured!.webgpu < measured!.cpu ? 'webgpu' : 'cpu');
@@ -108,6 +108,13 @@ describe.each(['newest', 'oldest'] as const)('three.js, the %s of the peer range
     expect(result).toMatchObject({ after: { backend: 'cpu', zeroCopy: false }, again: true, errors: [] });
     expect(result.onCpu).toBeLessThan(0.002);
     expect(result.back).toBeLessThan(0.002);
+  });
+
+  test("the renderer's device is destroyed during an animation, and the page makes another renderer", async () => {
+    const result = await shop.run('lostRenderer', tiny.argument);
+    expect(result).toMatchObject({ zeroCopy: true, frames: 12, events: ['cpu', 'webgpu'], error: 0, back: { zeroCopy: true } });
+    expect(result.after).toEqual({ backend: 'cpu', zeroCopy: false, fallback: expect.stringContaining('lost') as string });
+    expect(result.back.covered).toBeGreaterThan(0.05);
   });
 
   test('read back, the prediction shows late, and no frame is lost with the device', async () => {

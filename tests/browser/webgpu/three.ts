@@ -36,6 +36,8 @@ class Studio {
     const device = deviceOf(renderer);
     if (!device) throw new Error('three.js found no WebGPU adapter');
     device.addEventListener('uncapturederror', ({ error }) => studio.errors.push(error.message));
+    // The first frame of r170 is without shadows.
+    await studio.picture();
     return studio;
   }
 
@@ -115,8 +117,6 @@ export async function drawn(golden: Golden) {
   const ours = await dress(studio, golden, 'webgpu', studio.renderer);
   const theirs = await dress(studio, golden, 'cpu');
   const before = { backend: ours.cloth.backend, zeroCopy: ours.cloth.zeroCopy };
-  // The first frame of r170 is without shadows.
-  await studio.picture();
   const pictures = [];
   let bounded = true;
   for (const pose of golden.poses) {
@@ -262,4 +262,44 @@ export async function late(golden: Golden) {
   cloth.dispose();
   model.dispose();
   return { atOnce, stillOld, thenNew, last, backend, fallback };
+}
+
+/** The device of three's renderer is destroyed in the midst of an animation; then the page makes a new renderer. */
+export async function lostRenderer(golden: Golden) {
+  const studio = await Studio.open();
+  const { model, character, cloth } = await dress(studio, golden, 'webgpu', studio.renderer);
+  await settle(cloth);
+  const zeroCopy = cloth.zeroCopy;
+  const events: string[] = [];
+  model.addEventListener('backend', () => events.push(cloth.backend));
+  let [frames, error] = [0, 0];
+  for (let frame = 0; frame < 12; frame++) {
+    if (frame === 4) deviceOf(studio.renderer)!.destroy();
+    strike(character, golden.poses[frame % golden.poses.length]!);
+    cloth.update();
+    frames++;
+    // From the arrays on, every frame is the CPU's.
+    if (!cloth.zeroCopy) {
+      const shown = cloth.geometry.getAttribute('position').array as Float32Array;
+      const wanted = new Cloth(model, character, cloth.material).geometry.getAttribute('position').array as Float32Array;
+      error = Math.max(error, difference(shown, wanted));
+    }
+    await new Promise((resolve) => setTimeout(resolve, 20));
+  }
+  const after = { backend: cloth.backend, zeroCopy: cloth.zeroCopy, fallback: cloth.fallback };
+  cloth.dispose();
+  const next = await Studio.open();
+  await model.setBackend('webgpu', deviceOf(next.renderer));
+  const again = new Cloth(model, character, cloth.material, next.renderer);
+  next.scene.add(again);
+  next.frame(again);
+  await settle(again);
+  const seen = await next.picture();
+  again.visible = false;
+  const covered = apart(seen, await next.picture());
+  const back = { zeroCopy: again.zeroCopy, covered };
+  again.dispose();
+  model.dispose();
+  next.close();
+  return { zeroCopy, frames, events, error, after, back };
 }
