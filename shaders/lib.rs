@@ -78,14 +78,20 @@ params! {
     Blend { numbers: u32, count: u32, stride: u32 }
     /// `Params` of body_frame.wgsl.
     BodyFrame { joints: u32, root: u32, yaw: u32 }
+    /// `Params` of collide.wgsl.
+    Collide { vertices: u32, seeds: u32, steps: u32, gap: f32, depth: f32, steepest: f32 }
     /// `Params` of features.wgsl.
     Features { mean: [f32; 3], edge_scale: f32, deviation: [f32; 3], vertices: u32 }
+    /// `Params` of lift.wgsl.
+    Lift { numbers: u32 }
     /// `Params` of linear.wgsl and linear.row.wgsl.
     Linear { rows: u32, inputs: u32, outputs: u32, relu: u32 }
     /// `Params` of normals.wgsl.
     Normals { vertices: u32 }
     /// `Params` of skin.wgsl.
     Skin { vertices: u32, width: u32, back: u32, world: u32 }
+    /// `Params` of spread.wgsl.
+    Spread { vertices: u32, follow: f32 }
     /// `Params` of surface.wgsl.
     Surface { drawn: u32 }
 }
@@ -117,8 +123,12 @@ shaders! {
     BLEND: Blend, "blend" + [], [Read Read Read Write Write], [64, 1];
     /// Joints, inverse bind, mean and deviation -> transforms, pose vector.
     BODY_FRAME: BodyFrame, "body_frame" + [], [Read Read Read Write Write], [64, 1];
+    /// Body, its normals, offsets, fans, seeds, positions -> push.
+    COLLIDE: Collide, "collide" + [], [Read Read Read Read Read Read Write], [64, 1];
     /// V, T_C -> nodes, potentials.
     FEATURES: Features, "features" + [], [Read Read Write Write], [64, 1];
+    /// Displacement -> positions.
+    LIFT: Lift, "lift" + [], [Read Write], [64, 1];
     /// x, weight, bias -> y.
     LINEAR: Linear, "linear" + [], [Read Read Read Write], [16, 32];
     /// The same for a single row.
@@ -127,6 +137,8 @@ shaders! {
     NORMALS: Normals, "normals" + [], [Read Read Read Write], [64, 1];
     /// Rest, joints, weights, transforms -> positions.
     SKIN: Skin, "skin" + [], [Read Read Read Read Write], [64, 1];
+    /// Offsets, neighbours, push, before -> after.
+    SPREAD: Spread, "spread" + [], [Read Read Read Read Write], [64, 1];
     /// Vertex, positions, normals -> drawn positions, drawn normals.
     SURFACE: Surface, "surface" + [], [Read Read Read Write Write], [64, 1];
 }

@@ -33,6 +33,9 @@ pub enum Error {
     /// Data that cannot be trained on or evaluated.
     #[error("dataset: {0}")]
     Dataset(String),
+    /// A training whose loss is no number any more, or has exploded.
+    #[error("training diverged at {0}; try a lower learning rate")]
+    Diverged(String),
     /// Training that cannot go on.
     #[error("training: {0}")]
     Training(String),

@@ -3,7 +3,9 @@
 mod commands;
 
 use clap::{Parser, Subcommand};
-use commands::{bake, bench, character, evaluate, garment, inspect, motion, predict, render, sheet, simulate, train};
+use commands::{
+    bake, bench, character, evaluate, garment, inspect, motion, predict, render, sheet, simulate, study, train,
+};
 
 /// Learned cloth for any skinned character.
 ///
@@ -20,6 +22,7 @@ use commands::{bake, bench, character, evaluate, garment, inspect, motion, predi
 ///   ctsn sheet data character.glb -o sheet.png        twelve of the poses, to judge by eye
 ///   ctsn train data -o model.safetensors              the network, from all clips but the last tenth
 ///   ctsn evaluate model.safetensors data              errors on the rest
+///   ctsn study data -o study                          plain skinning, older methods, ablations and sizes beside it
 ///   ctsn render model.safetensors character.glb --clip NAME --frame N -o picture.png
 #[derive(Parser)]
 #[command(name = "ctsn", version, verbatim_doc_comment)]
@@ -37,6 +40,7 @@ enum Command {
     Simulate(simulate::Arguments),
     Train(train::Arguments),
     Evaluate(evaluate::Arguments),
+    Study(study::Arguments),
     Render(render::Arguments),
     Sheet(sheet::Arguments),
     Inspect(inspect::Arguments),
@@ -74,6 +78,7 @@ fn main() -> std::process::ExitCode {
         Command::Simulate(arguments) => simulate::run(&arguments),
         Command::Train(arguments) => train::run(&arguments),
         Command::Evaluate(arguments) => evaluate::run(&arguments),
+        Command::Study(arguments) => study::run(&arguments),
         Command::Bake(arguments) => bake::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
     };

@@ -1,6 +1,7 @@
 //! Pictures of results for people: views of a dressed character side by side, drawn off-screen without a GPU.
 
 mod canvas;
+mod comparison;
 mod figure;
 mod sheet;
 mod text;
@@ -8,6 +9,7 @@ mod text;
 use crate::rig::{Character, Pose};
 use crate::{Error, Result};
 use canvas::Canvas;
+pub use comparison::comparison;
 use figure::Figure;
 use glam::{DMat3, DVec2, DVec3};
 use image::RgbImage;

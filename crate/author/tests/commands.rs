@@ -1,6 +1,7 @@
 //! The binary `ctsn` on good and bad input: what is refused ends with exit code 1 and a message that names the thing, never a panic.
 
 mod made;
+mod training;
 
 use ctsn_core::file::{Tensor, Tensors};
 use glam::DVec3;

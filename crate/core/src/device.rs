@@ -1,7 +1,7 @@
 //! What a device must be able to do: the operations of the network, and storage for their operands.
 //! An operation is the unit of fusion: each has a file of its name on every device, and a gradient of its name for training.
 
-use crate::model::{Layer, Linear, Reference, Sizes, Skin};
+use crate::model::{Body, Layer, Linear, Reference, Sizes, Skin};
 use crate::network::Drawn;
 use crate::pose::Rig;
 use crate::topology::Graph;
@@ -91,6 +91,26 @@ pub trait Device {
     );
     /// positions [n, 3], triangles [t, 3] -> area-weighted unit normals [n, 3].
     fn normals(&mut self, positions: &Self::Buffer, triangles: &[u32], normals: &mut Self::Buffer);
+    /// The body's posed positions and normals [b, 3], cloth positions [n, 3] -> push [n, 3], the displacement that brings each cloth
+    /// vertex to the gap above the body; zero where there is room.
+    fn collide(
+        &mut self,
+        body: &Body<Self::Buffer, Self::Indices>,
+        posed: &Self::Buffer,
+        normals: &Self::Buffer,
+        positions: &Self::Buffer,
+        push: &mut Self::Buffer,
+    );
+    /// push [n, 3], displacement before [n, 3] -> after [n, 3]: follows the neighbours, and reaches at least the push.
+    fn spread(
+        &mut self,
+        graph: &Graph<Self::Indices>,
+        push: &Self::Buffer,
+        before: &Self::Buffer,
+        after: &mut Self::Buffer,
+    );
+    /// displacement [n, 3] is added to positions [n, 3].
+    fn lift(&mut self, displacement: &Self::Buffer, positions: &mut Self::Buffer);
     /// Drawn vertex -> cloth vertex [d], positions and normals [n, 3] -> those of the drawn vertices [d, 3].
     fn surface(
         &mut self,

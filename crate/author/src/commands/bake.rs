@@ -41,7 +41,8 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         options: options.clone(),
     })?;
     train::run(&train::Arguments { dataset: dataset.clone(), output: output.clone(), settings: settings.clone() })?;
-    evaluate::run(&evaluate::Arguments { model: output.clone(), dataset, report: None })
+    let json = Some(output.with_extension("report.json"));
+    evaluate::run(&evaluate::Arguments { model: output.clone(), dataset, json, html: None })
 }
 
 /// The garment `ctsn garment` makes, kept beside the dataset and made once.

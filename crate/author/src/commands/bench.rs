@@ -43,7 +43,8 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let architecture = arguments.network.architecture();
     let (setup, samples) = synthetic::dataset(vertices, joints, 16);
     let samples: Vec<_> = samples.iter().collect();
-    let model = ctsn_author::train::initial(&setup, &samples, architecture, 1)?;
+    let mut model = ctsn_author::train::initial(&setup, &samples, architecture, 1)?;
+    model.body = Some(ctsn_author::body::body(&setup, &samples)?);
     if let Some(path) = &arguments.write_model {
         return Ok(ctsn_author::dataset::write(path, &model.to_bytes(Storage::F32))?);
     }
@@ -61,7 +62,13 @@ pub fn run(arguments: &Arguments) -> Result<()> {
 
 /// Predictions on the CPU.
 fn cpu(model: &HostModel, poses: &[&[f32]], runs: usize) -> Result<()> {
-    for (name, level) in [("SIMD", Level::new()), ("baseline", Level::baseline())] {
+    let bare = HostModel { body: None, ..model.clone() };
+    let triangles = model.body.as_ref().map_or(0, |body| body.triangles.len() / 3);
+    println!("with repair of penetration against a body of {triangles} triangles, and without");
+    let baseline = Level::baseline();
+    for (name, level, model) in
+        [("SIMD", Level::new(), model), ("SIMD without", Level::new(), &bare), ("baseline", baseline, model)]
+    {
         let mut predictor = Predictor::from_model(model.clone(), level);
         let mut times: Vec<f64> = Vec::new();
         for run in 0..runs {
@@ -70,7 +77,7 @@ fn cpu(model: &HostModel, poses: &[&[f32]], runs: usize) -> Result<()> {
             times.push(start.elapsed().as_secs_f64() * 1e3);
         }
         println!(
-            "{name:<9} {:.2} ms a prediction (median of {}, least {:.2})",
+            "{name:<13} {:.2} ms a prediction (median of {}, least {:.2})",
             median(&mut times),
             times.len(),
             times[0]

@@ -11,6 +11,7 @@ pub mod predict;
 pub mod render;
 pub mod sheet;
 pub mod simulate;
+pub mod study;
 pub mod train;
 
 use anyhow::{Context, Result};

@@ -1,16 +1,19 @@
 //! `ctsn train`: the network from a dataset.
 
 use super::{Network, bar, file_name};
-use anyhow::Result;
-use ctsn_author::dataset::{self, Dataset, Split};
-use ctsn_author::train::{self, Loss, Trainer};
-use ctsn_core::model::Storage;
-use std::path::{Path, PathBuf};
-use std::time::Instant;
+use anyhow::{Context, Result, anyhow};
+use ctsn_author::body::body;
+use ctsn_author::dataset::{self, Dataset, Setup};
+use ctsn_author::train::{self, End, Files, Part, Row, Slices, Trainer, Variant};
+use ctsn_core::model::{HostModel, Storage};
+use std::path::PathBuf;
+use std::time::Duration;
 
 /// Train the network on a dataset: all clips but the last tenth (with fewer than ten: the first 90 % of each)
 ///
-/// A checkpoint is written beside the model every few epochs; training interrupted goes on from it, to the same result.
+/// A tenth of these are not learned from, but predicted after every epoch: the model with the least error on them is kept. The learning
+/// curve stands beside the model (MODEL.curve.csv). A checkpoint is written every few epochs; training interrupted goes on from it, to
+/// the same result.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// Dataset folder, as `ctsn simulate` leaves it
@@ -28,6 +31,12 @@ pub struct Settings {
     /// Passes over the training poses
     #[arg(long, default_value_t = 100)]
     epochs: usize,
+    /// Train for this long instead, as 90s, 60m or 1.5h: the learning rate has fallen when the time is up
+    #[arg(long, value_parser = duration, conflicts_with = "epochs")]
+    time_budget: Option<Duration>,
+    /// Stop after so many epochs without a better validation error
+    #[arg(long, default_value_t = 50)]
+    patience: usize,
     /// Poses per optimisation step
     #[arg(long, default_value_t = 8)]
     batch: usize,
@@ -39,6 +48,9 @@ pub struct Settings {
     seed: u64,
     #[command(flatten)]
     network: Network,
+    /// Parts of the network to leave out, for ablations: skeleton,mesh,weights
+    #[arg(long, value_enum, value_delimiter = ',')]
+    without: Vec<Part>,
     /// Storage of learned tensors
     #[arg(long, value_enum, default_value = "f16")]
     storage: StorageArgument,
@@ -52,73 +64,135 @@ enum StorageArgument {
     F16,
 }
 
-/// Epochs between checkpoints.
-const CHECKPOINT: usize = 5;
-
 pub fn run(arguments: &Arguments) -> Result<()> {
-    let Settings { epochs, batch, learning_rate, seed, ref network, storage } = arguments.settings;
     let dataset = Dataset::read(&arguments.dataset)?;
-    let samples = dataset.split(Split::Train);
-    let architecture = network.architecture();
-    let model = train::initial(&dataset.setup, &samples, architecture, seed)?;
-    let settings = train::Settings { epochs, batch, rate: learning_rate, seed };
-    let mut trainer = Trainer::new(model, &dataset.setup, &samples, settings)?;
-    let checkpoint = arguments.output.with_extension("checkpoint");
-    if checkpoint.exists() {
-        trainer.resume(&checkpoint)?;
-        println!("going on from epoch {} of {}", trainer.epoch, checkpoint.display());
+    let slices = train::slices(&dataset)?;
+    let files = Files {
+        checkpoint: arguments.output.with_extension("checkpoint"),
+        curve: arguments.output.with_extension("curve.csv"),
+    };
+    let mut trainer = arguments.settings.trainer(&dataset.setup, &slices)?;
+    if files.checkpoint.exists() {
+        trainer.resume(&files.checkpoint)?;
+        println!("going on from epoch {} of {}", trainer.epoch, files.checkpoint.display());
     }
-    println!("{} training poses, {} vertices, {architecture:?}", samples.len(), dataset.setup.template.len() / 3);
-    let loss = epochs_of(&mut trainer, epochs, &checkpoint)?;
-    let mut model = trainer.model();
-    let summary = serde_json::json!({
-        "character": dataset.setup.description.character,
-        "garment": dataset.setup.description.garment,
-        "clips": dataset.setup.description.clips,
-        "poses": samples.len(),
-        "epochs": epochs,
-        "batch": batch,
-        "seed": seed,
-        "loss_metres": loss.fine,
-        "ctsn": env!("CARGO_PKG_VERSION"),
-    });
-    model.training = Some(summary.to_string());
-    let bytes = model.to_bytes(match storage {
-        StorageArgument::F32 => Storage::F32,
-        StorageArgument::F16 => Storage::F16,
-    });
-    dataset::write(&arguments.output, &bytes)?;
-    std::fs::remove_file(&checkpoint).ok();
-    println!("{}: {} bytes, training loss {:.2} mm", file_name(&arguments.output), bytes.len(), loss.fine * 1e3);
-    Ok(())
+    let end = fit(&mut trainer, &slices, &files)?;
+    let name = file_name(&arguments.output);
+    match (end, trainer.best()) {
+        (End::Diverged(error), None) => Err(error.into()),
+        (_, None) => Err(anyhow!("no epoch was trained: wanted at least one")),
+        (end, Some((best, model))) => {
+            let bytes = arguments.settings.store(&dataset.setup, &slices, &trainer, &best, model)?;
+            dataset::write(&arguments.output, &bytes)?;
+            std::fs::remove_file(&files.checkpoint).ok();
+            println!("{name}: {} bytes, of epoch {}: {}", bytes.len(), best.epoch, errors(&best));
+            match end {
+                End::Diverged(error) => {
+                    Err(error).context(format!("{name} is of the best epoch before, {}", best.epoch))
+                }
+                End::NoGain | End::Done => Ok(()),
+            }
+        }
+    }
 }
 
-/// Runs what is left of `epochs`, writing checkpoints; the last epoch's loss.
-fn epochs_of(trainer: &mut Trainer, epochs: usize, checkpoint: &Path) -> Result<Loss> {
-    let (first, start) = (trainer.epoch, Instant::now());
-    let bar = bar(epochs, "train");
-    bar.set_position(first as u64);
+impl Settings {
+    /// A trainer that has not begun.
+    fn trainer(&self, setup: &Setup, slices: &Slices) -> Result<Trainer> {
+        let Self { epochs, time_budget: budget, patience, batch, learning_rate: rate, seed, .. } = *self;
+        let (architecture, variant) = (self.network.architecture(), Variant::without(&self.without));
+        let model = train::initial(setup, &slices.train, architecture, seed)?;
+        println!(
+            "{} poses to learn from, {} to validate, {} vertices, {architecture:?}",
+            slices.train.len(),
+            slices.validation.len(),
+            model.sizes.vertices
+        );
+        let settings = train::Settings { epochs, budget, patience, batch, rate, seed, variant };
+        Ok(Trainer::new(model, setup, &slices.train, settings)?)
+    }
+
+    /// The model file: the best epoch's model, and what it was trained on. Nothing in it depends on the hour.
+    fn store(
+        &self,
+        setup: &Setup,
+        slices: &Slices,
+        trainer: &Trainer,
+        best: &Row,
+        mut model: HostModel,
+    ) -> Result<Vec<u8>> {
+        let part = |part: &Part| format!("{part:?}").to_lowercase();
+        let summary = serde_json::json!({
+            "character": setup.description.character,
+            "garment": setup.description.garment,
+            "clips": setup.description.clips,
+            "poses": slices.train.len(),
+            "without": self.without.iter().map(part).collect::<Vec<_>>(),
+            "epoch": best.epoch,
+            "batch": self.batch,
+            "seed": self.seed,
+            "loss_metres": best.fine,
+            "untrained_validation_metres": trainer.untrained,
+            "validation_metres": best.distance,
+            "validation_degrees": best.normal,
+            "ctsn": env!("CARGO_PKG_VERSION"),
+        });
+        model.training = Some(summary.to_string());
+        model.body = Some(body(setup, &slices.train)?);
+        Ok(model.to_bytes(match self.storage {
+            StorageArgument::F32 => Storage::F32,
+            StorageArgument::F16 => Storage::F16,
+        }))
+    }
+}
+
+/// Steps of the bar: epochs are not known beforehand where time is given.
+const PARTS: f64 = 1000.0;
+
+/// Trains to the end, telling how it goes.
+fn fit(trainer: &mut Trainer, slices: &Slices, files: &Files) -> Result<End> {
+    let bar = bar(PARTS as usize, "train");
+    bar.set_position((PARTS * trainer.progress()) as u64);
     bar.reset_eta();
-    let (mut loss, mut steps_done) = (Loss::default(), 0);
-    while trainer.epoch < epochs {
-        loss = trainer.epoch(|_, _, _| steps_done += 1)?;
-        bar.set_position(trainer.epoch as u64);
-        bar.set_message(format!("E_dist {:.2} mm, coarse {:.2} mm", loss.fine * 1e3, loss.coarse * 1e3));
-        if trainer.epoch.is_multiple_of(CHECKPOINT) && trainer.epoch < epochs {
-            trainer.save(checkpoint)?;
+    let (first, start) = (trainer.epoch, trainer.seconds());
+    let end = trainer.fit(&slices.validation, files, |trainer, row| {
+        bar.set_position((PARTS * trainer.progress()) as u64);
+        let best = trainer.best_epoch().map_or(0, |best| best.epoch);
+        let text = format!("epoch {}: {}, best {best}", row.epoch, errors(row));
+        if bar.is_hidden() {
+            println!("{text}, {:.0} s", row.seconds);
         }
-        if bar.is_hidden() && (trainer.epoch.is_multiple_of(CHECKPOINT) || trainer.epoch == epochs) {
-            println!(
-                "epoch {} of {epochs}: {:.2} mm, {:.0} s",
-                trainer.epoch,
-                loss.fine * 1e3,
-                start.elapsed().as_secs_f64()
-            );
-        }
-    }
+        bar.set_message(text);
+    })?;
     bar.finish_and_clear();
-    if steps_done > 0 {
-        println!("{:.1} ms an optimisation step", start.elapsed().as_secs_f64() * 1e3 / steps_done as f64);
+    if let Some(distance) = trainer.untrained {
+        println!("before training: E_dist {:.2} mm", distance * 1e3);
     }
-    Ok(loss)
+    let steps = (trainer.epoch - first) * trainer.steps();
+    if steps > 0 {
+        println!("{:.1} ms an optimisation step", (trainer.seconds() - start) * 1e3 / steps as f64);
+    }
+    if let End::NoGain = end {
+        println!("stopped after epoch {}: no better validation error for long enough", trainer.epoch);
+    }
+    Ok(end)
+}
+
+fn errors(row: &Row) -> String {
+    let Row { fine, distance, normal, .. } = row;
+    format!("loss {:.2} mm, E_dist {:.2} mm, E_norm {normal:.2}°", fine * 1e3, distance * 1e3)
+}
+
+/// A number with its unit: s, m or h.
+fn duration(text: &str) -> Result<Duration, String> {
+    let wrong = || format!("wanted a time as 90s, 60m or 1.5h, found {text}");
+    let (number, unit) = text.split_at_checked(text.len().saturating_sub(1)).ok_or_else(wrong)?;
+    let seconds = match unit {
+        "s" => 1.0,
+        "m" => 60.0,
+        "h" => 3600.0,
+        _ => return Err(wrong()),
+    };
+    let number: f64 = number.parse().map_err(|_| wrong())?;
+    Duration::try_from_secs_f64(number * seconds).ok().filter(|time| !time.is_zero()).ok_or_else(wrong)
 }

@@ -9,11 +9,11 @@ use crate::rig::{Character, Mesh};
 use crate::{Error, Result};
 use glam::DVec3;
 
-/// Vertices of the skin, about.
-const VERTICES: usize = 7000;
+/// Vertices of a skin fine enough to simulate against, about.
+pub const SKIN: usize = 7000;
 
-/// The outer skin of the character's body in its canonical pose, and its distance from the body, metres.
-pub fn hull(character: &Character) -> Result<(Mesh, f64)> {
+/// The outer skin of the character's body in its canonical pose, of about so many vertices, and its distance from the body, metres.
+pub fn hull(character: &Character, vertices: usize) -> Result<(Mesh, f64)> {
     let positions = &character.body.positions;
     let low = positions.iter().fold(DVec3::INFINITY, |low, p| low.min(*p));
     let high = positions.iter().fold(DVec3::NEG_INFINITY, |high, p| high.max(*p));
@@ -29,7 +29,7 @@ pub fn hull(character: &Character) -> Result<(Mesh, f64)> {
         smoothing: cell,
     };
     let field = Field::new(&solid, cell);
-    let piece = remesh::remesh(cut::cut(cut::extract(&field), &[]), &field, &[], VERTICES);
+    let piece = remesh::remesh(cut::cut(cut::extract(&field), &[]), &field, &[], vertices);
     match piece.mesh.triangles.is_empty() {
         true => Err(Error::Character("the body encloses nothing a garment could touch".into())),
         false => Ok((piece.mesh, cell)),

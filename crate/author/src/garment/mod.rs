@@ -35,7 +35,7 @@ mod test;
 
 pub use check::{Findings, check, load};
 pub use drape::{Rest, drape};
-pub use hull::hull;
+pub use hull::{SKIN, hull};
 pub use kind::Kind;
 pub use quality::{Quality, quality};
 

@@ -45,6 +45,14 @@ impl Figure {
         Self { body, cloth }
     }
 
+    /// The same with cloth of other colours, linear RGB by vertex; of none, with its own.
+    pub fn painted(mut self, colour: &[[f32; 3]]) -> Self {
+        if let Some(cloth) = self.cloth.as_mut().filter(|_| !colour.is_empty()) {
+            cloth.colour = colour.to_vec();
+        }
+        self
+    }
+
     /// The layers to draw.
     pub fn layers(&self) -> Vec<Layer<'_>> {
         let mut layers = vec![self.body.layer(false)];

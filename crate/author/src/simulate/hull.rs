@@ -17,9 +17,9 @@ const ROUNDS: usize = 4;
 /// Joints a vertex of the skin may follow.
 const JOINTS: usize = 6;
 
-/// The character with its outer skin for a body.
-pub(super) fn hull(character: &Character, garment: &Mesh) -> Result<Character> {
-    let (mut mesh, distance) = garment::hull(character)?;
+/// The character with its outer skin, of about so many vertices, for a body.
+pub fn hull(character: &Character, garment: &Mesh, vertices: usize) -> Result<Character> {
+    let (mut mesh, distance) = garment::hull(character, vertices)?;
     let collider = Collider::new(character, garment, f64::MAX)?;
     let body = PosedBody::new(&collider, collider.rest.clone());
     let mut weights: Vec<SkinWeights> = Vec::with_capacity(mesh.positions.len());

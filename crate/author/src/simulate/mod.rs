@@ -27,6 +27,7 @@ mod transport;
 mod tests;
 
 pub use distance::BodyDistance;
+pub use hull::hull;
 pub use material::{GRAVITY, Material};
 pub use outcome::{Outcome, Status};
 pub use path::{body_frame, path, to_body_frame};

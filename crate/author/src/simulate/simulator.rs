@@ -18,6 +18,7 @@ use super::path::{body_frame, is_sound, motion, path};
 use super::posed::PosedBody;
 use super::settings::Settings;
 use super::transport::{adjacency, transport};
+use crate::garment::SKIN;
 use crate::rig::{Character, Garment, Pose, SkinWeights, Surface};
 use crate::{Error, Result};
 
@@ -43,7 +44,7 @@ impl Simulator {
         let rest = garment.mesh.positions.clone();
         settings.check(rest.len())?;
         let cloth = Cloth::new(&garment.mesh, &warp(garment), &material, settings.shape)?;
-        let collider = Collider::new(&hull(character, &garment.mesh)?, &garment.mesh, settings.reach)?;
+        let collider = Collider::new(&hull(character, &garment.mesh, SKIN)?, &garment.mesh, settings.reach)?;
         let body = BodyDistance::new(character, &garment.mesh)?;
         let layout = Arc::new(Layout::new(&cloth, &[])?);
         let attached = attach(&collider, &rest, &settings.attached);

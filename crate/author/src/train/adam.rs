@@ -1,5 +1,9 @@
 //! Adam (Kingma and Ba 2015), with cosine decay of the learning rate. network.md §6.
 
+use rayon::prelude::*;
+
+/// Parameters a thread steps at a time.
+const CHUNK: usize = 4096;
 const BETA1: f32 = 0.9;
 const BETA2: f32 = 0.999;
 const EPSILON: f32 = 1e-8;
@@ -19,16 +23,23 @@ impl Moments {
         Self { mean: vec![0.0; length], square: vec![0.0; length] }
     }
 
-    /// One step, number `step` (from 1), against `gradient`.
-    pub fn step(&mut self, step: usize, rate: f32, gradient: &[f32], parameter: &mut [f32]) {
+    /// One step, number `step` (from 1), against the sum of `gradients`, added in their order.
+    pub fn step(&mut self, step: usize, rate: f32, gradients: &[&[f32]], parameter: &mut [f32]) {
         let power = step.min(1_000_000) as i32;
         let rate = rate * (1.0 - BETA2.powi(power)).sqrt() / (1.0 - BETA1.powi(power));
-        let moments = self.mean.iter_mut().zip(&mut self.square);
-        for ((parameter, g), (mean, square)) in parameter.iter_mut().zip(gradient).zip(moments) {
-            *mean = BETA1 * *mean + (1.0 - BETA1) * g;
-            *square = BETA2 * *square + (1.0 - BETA2) * g * g;
-            *parameter -= rate * *mean / (square.sqrt() + EPSILON);
-        }
+        let moments = self.mean.par_chunks_mut(CHUNK).zip(self.square.par_chunks_mut(CHUNK));
+        parameter.par_chunks_mut(CHUNK).zip(moments).enumerate().for_each(|(chunk, (parameter, (mean, square)))| {
+            let mut sum = [0.0; CHUNK];
+            let sum = &mut sum[..parameter.len()];
+            for gradient in gradients {
+                sum.iter_mut().zip(&gradient[chunk * CHUNK..]).for_each(|(sum, g)| *sum += g);
+            }
+            for ((parameter, g), (mean, square)) in parameter.iter_mut().zip(sum).zip(mean.iter_mut().zip(square)) {
+                *mean = BETA1 * *mean + (1.0 - BETA1) * *g;
+                *square = BETA2 * *square + (1.0 - BETA2) * *g * *g;
+                *parameter -= rate * *mean / (square.sqrt() + EPSILON);
+            }
+        });
     }
 }
 

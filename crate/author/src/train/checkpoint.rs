@@ -1,22 +1,30 @@
-//! Checkpoints: parameters, moments and epoch. Training resumed from one goes on as if it had not been interrupted.
+//! Checkpoints: parameters, moments, the best parameters and the learning curve. Training resumed from one goes on as if it had not been interrupted.
 
-use super::{Settings, Trainer};
+use super::{Row, Trainer};
 use crate::dataset::{tensors, write};
 use crate::{Error, Result};
 use ctsn_core::file::{Tensor, Tensors};
 use std::path::Path;
+use std::time::Instant;
 
 impl Trainer {
     /// Writes a checkpoint.
     pub fn save(&self, path: &Path) -> Result<()> {
         let mut file = Tensors::default();
-        file.metadata.insert("settings".to_owned(), key(&self.settings));
-        file.metadata.insert("epoch".to_owned(), self.epoch.to_string());
+        file.metadata.insert("settings".to_owned(), self.key());
+        file.metadata.insert(
+            "curve".to_owned(),
+            serde_json::to_string(&(self.untrained, &self.curve))
+                .map_err(|error| Error::Training(error.to_string()))?,
+        );
         for (i, (id, moments)) in self.parameters.iter().zip(&self.moments).enumerate() {
             let parts = [("value", self.shared.get(*id)), ("mean", &moments.mean), ("square", &moments.square)];
             for (name, values) in parts {
                 file.tensors.insert(format!("{i:03}.{name}"), Tensor::f32(&[values.len()], values));
             }
+        }
+        for (i, values) in self.best.iter().enumerate() {
+            file.tensors.insert(format!("{i:03}.best"), Tensor::f32(&[values.len()], values));
         }
         write(path, &file.to_bytes())
     }
@@ -25,24 +33,31 @@ impl Trainer {
     pub fn resume(&mut self, path: &Path) -> Result<()> {
         let wrong = |reason: String| Error::File { path: path.to_owned(), reason };
         let file = tensors(path)?;
-        let epoch = file.metadata.get("epoch").and_then(|text| text.parse().ok());
-        if file.metadata.get("settings") != Some(&key(&self.settings)) {
-            return Err(wrong("is a checkpoint of a training with other settings; delete it to start anew".to_owned()));
+        if file.metadata.get("settings") != Some(&self.key()) {
+            return Err(wrong("is a checkpoint of another training; delete it to start anew".to_owned()));
         }
+        let curve =
+            file.metadata.get("curve").and_then(|text| serde_json::from_str::<(Option<f32>, Vec<Row>)>(text).ok());
+        let (untrained, curve) = curve.ok_or_else(|| wrong("holds no learning curve".to_owned()))?;
+        let read = |i: usize, name: &str, values: &mut [f32]| {
+            let stored = file.f32(&format!("{i:03}.{name}"), &[Some(values.len())]);
+            stored.map(|stored| values.copy_from_slice(&stored.0)).map_err(|error| wrong(error.to_string()))
+        };
+        self.best = self.parameters.iter().map(|id| self.shared.get(*id).to_vec()).collect();
         for (i, (id, moments)) in self.parameters.iter().zip(&mut self.moments).enumerate() {
-            for (name, values) in
-                [("value", self.shared.get_mut(*id)), ("mean", &mut moments.mean), ("square", &mut moments.square)]
-            {
-                let shape = [Some(values.len())];
-                let stored = file.f32(&format!("{i:03}.{name}"), &shape).map_err(|error| wrong(error.to_string()))?;
-                values.copy_from_slice(&stored.0);
-            }
+            read(i, "value", self.shared.get_mut(*id))?;
+            read(i, "mean", &mut moments.mean)?;
+            read(i, "square", &mut moments.square)?;
+            read(i, "best", &mut self.best[i])?;
         }
-        self.epoch = epoch.ok_or_else(|| wrong("names no epoch".to_owned()))?;
+        self.epoch = curve.len();
+        self.started = (Instant::now(), curve.last().map_or(0.0, |row| row.seconds));
+        (self.untrained, self.curve) = (untrained, curve);
         Ok(())
     }
-}
 
-fn key(settings: &Settings) -> String {
-    format!("{settings:?}")
+    /// What two trainings must have in common to go on as one.
+    fn key(&self) -> String {
+        format!("{:?} {:?} {} poses", self.settings, self.model.sizes, self.items.len())
+    }
 }

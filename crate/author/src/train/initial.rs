@@ -1,6 +1,7 @@
 //! The model before its first step: everything that is not learned, and seeded initial weights.
-//! `W_C^I[i]` are the skin weights of the body vertex nearest to cloth vertex `i` (KD-tree). network.md §3, §4.
+//! The mesh stream sees the body vertex nearest to each cloth vertex (KD-tree). network.md §3, §4.
 
+use super::weights;
 use crate::dataset::{Sample, Setup};
 use crate::rig::SkinWeights;
 use crate::{Error, Result};
@@ -35,8 +36,6 @@ impl Default for Architecture {
 const EMBEDDING: [usize; 2] = [128, 64];
 /// Hidden layer of the vertex-level MLP.
 const VERTEX: usize = 64;
-/// Skin weights per cloth vertex that training may change.
-const SLOTS: usize = 8;
 /// Least standard deviation of a pose number: a joint that hardly moved in training must not amplify.
 const LEAST_STD: f32 = 0.05;
 
@@ -58,7 +57,7 @@ pub fn initial(setup: &Setup, train: &[&Sample], architecture: Architecture, see
         sizes: Sizes { vertices: n, joints, embedding, basis, features, heads },
         reference: reference(setup, &graph, &nearest, &frames),
         rig: standardised(setup, &frames)?,
-        skin: trainable_skin(&graph, &nearest, &setup.body_weights),
+        skin: weights::trainable(&graph, &weights::smooth(setup, &graph, &nearest)?),
         triangles: setup.triangles.clone(),
         graph,
         rest: setup.template.clone(),
@@ -68,6 +67,7 @@ pub fn initial(setup: &Setup, train: &[&Sample], architecture: Architecture, see
         vertex: mlp(&[features, VERTEX, basis], &mut rng),
         mesh: small(n * 3 * basis, &mut rng),
         surface: Some(setup.surface.clone()).filter(|surface| !surface.vertex.is_empty()),
+        body: None,
         training: None,
     })
 }
@@ -149,7 +149,7 @@ fn reference(
     }
 }
 
-fn rows_to_skin(rows: &[SkinWeights]) -> Skin<Vec<f32>, Vec<u32>> {
+pub(super) fn rows_to_skin(rows: &[SkinWeights]) -> Skin<Vec<f32>, Vec<u32>> {
     let width = rows.iter().map(Vec::len).max().unwrap_or(0).max(1);
     let mut skin = Skin { joints: vec![0; rows.len() * width], weights: vec![0.0; rows.len() * width], width };
     for (i, row) in rows.iter().enumerate() {
@@ -159,29 +159,6 @@ fn rows_to_skin(rows: &[SkinWeights]) -> Skin<Vec<f32>, Vec<u32>> {
         }
     }
     skin
-}
-
-/// `W_C^I` with room to learn: each vertex also gets, at weight 0, the joints that matter to the cloth around it.
-fn trainable_skin(
-    graph: &Graph<Vec<u32>>,
-    nearest: &[usize],
-    body_weights: &[SkinWeights],
-) -> Skin<Vec<f32>, Vec<u32>> {
-    let own = |i: usize| &body_weights[nearest[i]];
-    let row = |i: usize| {
-        let mut row = own(i).clone();
-        let mut around = std::collections::BTreeMap::new();
-        for j in graph.of(i).iter().flat_map(|j| graph.of(*j as usize)) {
-            own(*j as usize).iter().for_each(|(joint, weight)| *around.entry(*joint).or_insert(0.0) += weight);
-        }
-        around.retain(|joint, _| !row.iter().any(|(own, _)| own == joint));
-        let mut around: Vec<(usize, f64)> = around.into_iter().collect();
-        around.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
-        let free = SLOTS.saturating_sub(row.len());
-        row.extend(around.into_iter().take(free).map(|(joint, _)| (joint, 0.0)));
-        row
-    };
-    rows_to_skin(&(0..nearest.len()).map(row).collect::<Vec<_>>())
 }
 
 /// Residual matrices start near nothing, so that training starts from plain skinning.
@@ -196,11 +173,11 @@ fn linear(inputs: usize, outputs: usize, rng: &mut fastrand::Rng) -> Linear<Vec<
     Linear { weight: uniform(inputs * outputs), bias: uniform(outputs), inputs, outputs }
 }
 
-fn mlp(sizes: &[usize], rng: &mut fastrand::Rng) -> Vec<Linear<Vec<f32>>> {
+pub(crate) fn mlp(sizes: &[usize], rng: &mut fastrand::Rng) -> Vec<Linear<Vec<f32>>> {
     sizes.windows(2).map(|pair| linear(pair[0], pair[1], rng)).collect()
 }
 
-fn layer(inputs: usize, features: usize, rng: &mut fastrand::Rng) -> Layer<Vec<f32>> {
+pub(crate) fn layer(inputs: usize, features: usize, rng: &mut fastrand::Rng) -> Layer<Vec<f32>> {
     Layer {
         project: linear(inputs, 4 * features, rng),
         edge: linear(6, features, rng).weight,

@@ -1,14 +1,20 @@
 //! Training: the network's forward pass recorded on the [`Tape`], its gradients, Adam. network.md §6.
-//! Each step's batch is dealt to a fixed number of lanes and summed in their order, so the result does not depend on threads.
+//! Each step's batch is dealt in a fixed number of shares, summed in their order, so the result does not depend on threads.
 
-mod adam;
+pub(crate) mod adam;
 mod checkpoint;
+mod curve;
+mod fit;
 pub mod gradient;
 mod initial;
+pub(crate) mod item;
+mod slice;
 mod smooth;
-mod tape;
+pub(crate) mod tape;
 #[cfg(test)]
 mod tests;
+mod variant;
+mod weights;
 
 use crate::dataset::{Sample, Setup};
 use crate::{Error, Result};
@@ -16,31 +22,45 @@ use adam::{Moments, cosine};
 use ctsn_core::device::{Device, Space};
 use ctsn_core::model::HostModel;
 use ctsn_core::network::{Activations, DeviceModel, Streams, forward};
-use ctsn_core::pose::BodyFrame;
+pub use fit::{End, Files, Row};
 pub use initial::{Architecture, initial};
+pub(crate) use initial::{layer, mlp};
+use item::Item;
 use rayon::prelude::*;
+pub use slice::{Slices, slices};
 use smooth::Smoother;
+use std::time::{Duration, Instant};
 use tape::{Id, Lane, Shared, Tape};
+pub use variant::{Part, Variant};
 
-/// Lanes that share a batch.
-const LANES: usize = 4;
+/// Shares a batch is dealt in.
+const SHARES: usize = 4;
+
+/// A gradient per parameter array.
+type Sums = Vec<Vec<f32>>;
 
 /// How to train.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     /// Passes over the training samples.
     pub epochs: usize,
+    /// Training time to spend instead of `epochs`: the learning rate decays with time, whatever the machine does meanwhile.
+    pub budget: Option<Duration>,
+    /// Epochs without a better validation error after which training ends.
+    pub patience: usize,
     /// Samples per step.
     pub batch: usize,
     /// Adam's learning rate at the start.
     pub rate: f32,
     /// Seed of initial weights and shuffling.
     pub seed: u64,
+    /// The parts that learn.
+    pub variant: Variant,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { epochs: 60, batch: 8, rate: 1e-3, seed: 1 }
+        Self { epochs: 100, budget: None, patience: 50, batch: 8, rate: 1e-3, seed: 1, variant: Variant::FULL }
     }
 }
 
@@ -53,13 +73,6 @@ pub struct Loss {
     pub fine: f32,
 }
 
-/// One sample as the tape sees it.
-struct Item {
-    frame: BodyFrame,
-    truth: Vec<f32>,
-    smooth: Vec<f32>,
-}
-
 /// Training in progress: parameters, moments and the recorded network.
 pub struct Trainer {
     model: HostModel,
@@ -70,50 +83,83 @@ pub struct Trainer {
     parameters: Vec<Id>,
     moments: Vec<Moments>,
     activations: Activations<Id>,
-    coarse: Id,
+    coarse: Option<Id>,
+    /// A lane per thread.
     lanes: Vec<Lane>,
+    /// Gradients of `parameters`, summed over the samples of each share of the batch.
+    sums: Vec<Sums>,
+    curve: Vec<Row>,
+    /// E_dist on the validation slice before the first epoch, metres.
+    pub untrained: Option<f32>,
+    /// Values of `parameters` at the best epoch; empty before the first.
+    best: Vec<Vec<f32>>,
+    /// When this process began to train, and the seconds spent before.
+    started: (Instant, f64),
     /// Epochs done.
     pub epoch: usize,
 }
 
 impl Trainer {
     /// Prepares training of `model` on `samples`.
-    pub fn new(model: HostModel, setup: &Setup, samples: &[&Sample], settings: Settings) -> Result<Self> {
+    pub fn new(mut model: HostModel, setup: &Setup, samples: &[&Sample], settings: Settings) -> Result<Self> {
         if samples.is_empty() {
             return Err(Error::Training("the training split is empty".to_owned()));
         }
-        if settings.batch == 0 || settings.rate <= 0.0 {
-            return Err(Error::Training(format!("batch and learning rate must be positive, found {settings:?}")));
+        let Settings { batch, rate, variant, .. } = settings;
+        if batch == 0 || rate.is_nan() || rate <= 0.0 {
+            return Err(Error::Training(format!("batch and learning rate must be positive, found {batch} and {rate}")));
         }
+        variant.silence(&mut model);
         let smoother = Smoother::new(model.sizes.vertices, &setup.triangles);
-        let items = samples.iter().map(|sample| Item::new(&model, sample, &smoother)).collect::<Result<_>>()?;
+        let items = samples.iter().map(|sample| Item::new(&model, sample, Some(&smoother))).collect::<Result<_>>()?;
         let mut tape = Tape::default();
         let recorded = upload(&model, &mut tape);
-        let parameters: Vec<Id> = recorded.parameters().into_iter().copied().collect();
-        let shared = tape.seal(&recorded.parameters());
+        let learns = |(i, id): (usize, &Id)| variant.learns(i).then_some(*id);
+        let parameters: Vec<Id> = recorded.parameters().into_iter().enumerate().filter_map(learns).collect();
+        let shared = tape.seal(&parameters.iter().collect::<Vec<_>>());
         let mut activations = Activations::new(&model, |_, length| tape.buffer(&vec![0.0; length]));
-        forward(&mut tape, &recorded, Streams::Both, Space::Body, &mut activations);
-        let mut coarse = tape.buffer(&vec![0.0; model.sizes.vertices * 3]);
-        tape.skin(&activations.coarse, &recorded.skin, &activations.body_frame, Space::Body, &mut coarse);
-        let lanes = (0..LANES.min(settings.batch)).map(|_| tape.lane(&shared)).collect();
-        let moments = parameters.iter().map(|id| Moments::new(shared.get(*id).len())).collect();
-        Ok(Self { model, settings, items, tape, shared, parameters, moments, activations, coarse, lanes, epoch: 0 })
+        let streams = if variant.mesh { Streams::Both } else { Streams::Skeleton };
+        forward(&mut tape, &recorded, streams, Space::Body, &mut activations);
+        let coarse = (variant.skeleton && variant.mesh).then(|| {
+            let mut coarse = tape.buffer(&vec![0.0; model.sizes.vertices * 3]);
+            tape.skin(&activations.coarse, &recorded.skin, &activations.body_frame, Space::Body, &mut coarse);
+            coarse
+        });
+        let shares = SHARES.min(batch);
+        let lanes = (0..shares.min(rayon::current_num_threads())).map(|_| tape.lane(&shared)).collect();
+        let lengths = || parameters.iter().map(|id| shared.get(*id).len());
+        let sums = vec![lengths().map(|length| vec![0.0; length]).collect(); shares];
+        let moments = lengths().map(Moments::new).collect();
+        Ok(Self {
+            model,
+            settings,
+            items,
+            tape,
+            shared,
+            parameters,
+            moments,
+            activations,
+            coarse,
+            lanes,
+            sums,
+            curve: Vec::new(),
+            untrained: None,
+            best: Vec::new(),
+            started: (Instant::now(), 0.0),
+            epoch: 0,
+        })
     }
 
     /// One pass over the samples, shuffled by seed and epoch; `progress(step, steps, loss)` after every step.
     pub fn epoch(&mut self, mut progress: impl FnMut(usize, usize, Loss)) -> Result<Loss> {
         let mut order: Vec<usize> = (0..self.items.len()).collect();
         fastrand::Rng::with_seed(self.settings.seed.wrapping_add(self.epoch as u64)).shuffle(&mut order);
-        let steps = order.len().div_ceil(self.settings.batch);
+        let steps = self.steps();
         let mut total = Loss::default();
         for (i, batch) in order.chunks(self.settings.batch).enumerate() {
-            let loss = self.step(batch, self.epoch * steps + i, self.settings.epochs * steps);
+            let loss = self.step(batch, self.epoch * steps + i);
             if !(loss.fine.is_finite() && loss.coarse.is_finite()) {
-                let place = format!("epoch {} step {i}", self.epoch);
-                return Err(Error::Training(format!(
-                    "diverged at {place}: loss {}; try a lower learning rate",
-                    loss.fine
-                )));
+                return Err(Error::Diverged(format!("epoch {} step {}: loss {}", self.epoch + 1, i + 1, loss.fine)));
             }
             let share = batch.len() as f32 / order.len() as f32;
             total.coarse += share * loss.coarse;
@@ -124,90 +170,100 @@ impl Trainer {
         Ok(total)
     }
 
-    /// One optimisation step, number `done` of `all`.
-    fn step(&mut self, batch: &[usize], done: usize, all: usize) -> Loss {
-        let (tape, shared, items) = (&self.tape, &self.shared, &self.items);
-        let (activations, coarse) = (&self.activations, self.coarse);
-        let lanes = self.lanes.len();
-        let run = |(number, lane): (usize, &mut Lane)| {
-            lane.clear(shared, true);
-            let mut loss = Loss::default();
-            for item in batch.iter().skip(number).step_by(lanes) {
-                let sample = sample(tape, shared, lane, activations, coarse, &items[*item], batch.len());
-                loss.coarse += sample.coarse;
-                loss.fine += sample.fine;
-            }
-            loss
+    /// Optimisation steps per epoch.
+    pub fn steps(&self) -> usize {
+        self.items.len().div_ceil(self.settings.batch)
+    }
+
+    /// Seconds of training so far, in this process and before.
+    pub fn seconds(&self) -> f64 {
+        self.started.1 + self.started.0.elapsed().as_secs_f64()
+    }
+
+    /// Share of the training that is over: of its time where that is given, else of its epochs.
+    pub fn progress(&self) -> f64 {
+        self.progress_at(self.epoch * self.steps())
+    }
+
+    fn progress_at(&self, step: usize) -> f64 {
+        match self.settings.budget {
+            Some(budget) => self.seconds() / budget.as_secs_f64(),
+            None => step as f64 / (self.settings.epochs * self.steps()).max(1) as f64,
+        }
+    }
+
+    /// Learning rate of optimisation step `step`.
+    fn rate(&self, step: usize) -> f32 {
+        cosine(self.settings.rate, self.progress_at(step) as f32)
+    }
+
+    /// Optimisation step number `done`.
+    fn step(&mut self, batch: &[usize], done: usize) -> Loss {
+        let rate = self.rate(done);
+        let (tape, shared, items, parameters) = (&self.tape, &self.shared, &self.items, &self.parameters);
+        let (activations, coarse, shares) = (&self.activations, self.coarse, self.sums.len());
+        let each = shares.div_ceil(self.lanes.len());
+        let run = |(thread, (lane, sums)): (usize, (&mut Lane, &mut [Sums]))| {
+            let share = |(number, sums): (usize, &mut Sums)| {
+                sums.iter_mut().for_each(|sum| sum.fill(0.0));
+                lane.exchange(parameters, sums);
+                let mut loss = Loss::default();
+                for item in batch.iter().skip(thread * each + number).step_by(shares) {
+                    let sample = items[*item].learn(tape, shared, lane, activations, coarse, batch.len());
+                    loss.coarse += sample.coarse;
+                    loss.fine += sample.fine;
+                }
+                lane.exchange(parameters, sums);
+                loss
+            };
+            sums.iter_mut().enumerate().map(share).collect()
         };
-        let losses: Vec<Loss> = self.lanes.par_iter_mut().enumerate().map(run).collect();
-        let rate = cosine(self.settings.rate, done as f32 / all as f32);
-        self.update(done + 1, rate);
+        let shares = self.lanes.par_iter_mut().zip(self.sums.par_chunks_mut(each)).enumerate();
+        let losses: Vec<Vec<Loss>> = shares.map(run).collect();
+        for (i, (id, moments)) in self.parameters.iter().zip(&mut self.moments).enumerate() {
+            let gradients: Vec<&[f32]> = self.sums.iter().map(|sums| sums[i].as_slice()).collect();
+            moments.step(done + 1, rate, &gradients, self.shared.get_mut(*id));
+        }
         let count = batch.len() as f32;
-        let sum = |part: fn(&Loss) -> f32| losses.iter().map(part).sum::<f32>() / count;
+        let sum = |part: fn(&Loss) -> f32| losses.iter().flatten().map(part).sum::<f32>() / count;
         Loss { coarse: sum(|loss| loss.coarse), fine: sum(|loss| loss.fine) }
     }
 
-    /// Sums the lanes' gradients in order and steps every parameter.
-    fn update(&mut self, step: usize, rate: f32) {
-        let Some((first, others)) = self.lanes.split_first_mut() else { return };
-        for (id, moments) in self.parameters.iter().zip(&mut self.moments) {
-            let gradient = first.gradient_mut(*id);
-            for lane in &*others {
-                gradient.iter_mut().zip(lane.gradient(*id)).for_each(|(sum, g)| *sum += g);
-            }
-            moments.step(step, rate, gradient, self.shared.get_mut(*id));
-        }
+    /// Mean E_dist (metres) and E_norm (degrees) of the model as it stands, on `samples`. network.md §7.
+    pub fn validate(&mut self, samples: &[&Sample]) -> Result<(f32, f32)> {
+        let (tape, shared, a, model) = (&self.tape, &self.shared, &self.activations, &self.model);
+        let lanes = self.lanes.len();
+        let run = |(number, lane): (usize, &mut Lane)| {
+            let mine = samples.iter().skip(number).step_by(lanes);
+            mine.map(|sample| Ok(Item::new(model, sample, None)?.compare(model, tape, shared, lane, a))).collect()
+        };
+        let errors = self.lanes.par_iter_mut().enumerate().map(run).collect::<Result<Vec<Vec<(f64, f64)>>>>()?;
+        // Summed in the samples' order, whatever the number of lanes.
+        let ordered = || (0..samples.len()).map(|i| errors[i % lanes][i / lanes]);
+        let mean = |total: f64| (total / samples.len() as f64) as f32;
+        Ok((mean(ordered().map(|error| error.0).sum()), mean(ordered().map(|error| error.1).sum())))
     }
 
     /// The model as trained so far.
     pub fn model(&self) -> HostModel {
+        self.filled(self.parameters.iter().map(|id| self.shared.get(*id)))
+    }
+
+    /// The epoch with the least validation error and its model; `None` before the first.
+    pub fn best(&self) -> Option<(Row, HostModel)> {
+        Some((self.best_epoch()?, self.filled(self.best.iter().map(Vec::as_slice))))
+    }
+
+    fn filled<'a>(&self, parameters: impl Iterator<Item = &'a [f32]>) -> HostModel {
         let mut model = self.model.clone();
-        for (values, id) in model.parameters_mut().into_iter().zip(&self.parameters) {
-            values.copy_from_slice(self.shared.get(*id));
-        }
+        let arrays = model.parameters_mut().into_iter().enumerate();
+        let learning = arrays.filter(|(i, _)| self.settings.variant.learns(*i));
+        learning.zip(parameters).for_each(|((_, array), values)| array.copy_from_slice(values));
         model
     }
 }
 
-fn upload(model: &HostModel, tape: &mut Tape) -> DeviceModel<Tape> {
+pub(crate) fn upload(model: &HostModel, tape: &mut Tape) -> DeviceModel<Tape> {
     let tape = std::cell::RefCell::new(tape);
     model.map(|values| tape.borrow_mut().buffer(values), |indices| tape.borrow_mut().indices(indices))
-}
-
-/// Forward and backward pass of one sample; gradients are those of the batch's mean loss.
-fn sample(
-    tape: &Tape,
-    shared: &Shared,
-    lane: &mut Lane,
-    a: &Activations<Id>,
-    coarse: Id,
-    item: &Item,
-    batch: usize,
-) -> Loss {
-    lane.value_mut(a.pose).copy_from_slice(&item.frame.vector);
-    lane.value_mut(a.body_frame).copy_from_slice(&item.frame.transforms);
-    tape.run(shared, lane);
-    lane.clear(shared, false);
-    let scale = 1.0 / batch as f32;
-    let mut against = |predicted: Id, truth: &[f32]| {
-        let mut g = lane.take_gradient(predicted);
-        let loss = gradient::distance::distance(lane.value(shared, predicted), truth, scale, &mut g);
-        *lane.gradient_mut(predicted) = g;
-        loss
-    };
-    let loss = Loss { coarse: against(coarse, &item.smooth), fine: against(a.positions, &item.truth) };
-    tape.backward(shared, lane);
-    loss
-}
-
-impl Item {
-    fn new(model: &HostModel, sample: &Sample, smoother: &Smoother) -> Result<Self> {
-        if sample.truth.len() != model.sizes.vertices * 3 {
-            let (wanted, found) = (model.sizes.vertices, sample.truth.len() / 3);
-            return Err(Error::Training(format!("a sample has {found} vertices, the model {wanted}")));
-        }
-        let mut frame = BodyFrame::new(model.sizes.joints);
-        model.rig.body_frame(&sample.joints, &mut frame)?;
-        Ok(Self { frame, truth: sample.truth.clone(), smooth: smoother.smooth(&sample.truth) })
-    }
 }

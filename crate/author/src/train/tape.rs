@@ -4,7 +4,7 @@
 use super::gradient;
 use ctsn_core::cpu::Level;
 use ctsn_core::device::{Activation, Device, Space};
-use ctsn_core::model::{Layer, Linear, Reference, Sizes, Skin};
+use ctsn_core::model::{Body, Layer, Linear, Reference, Sizes, Skin};
 use ctsn_core::network::Drawn;
 use ctsn_core::pose::Rig;
 use ctsn_core::topology::Graph;
@@ -21,10 +21,38 @@ pub struct IndexId(usize);
 pub(super) enum Operation {
     Linear { x: Id, layer: Linear<Id>, activation: Activation, y: Id },
     Blend { weights: Id, basis: Id, rest: Id, residual: Id, template: Id },
+    Add { rest: Id, residual: Id, total: Id },
     Skin { rest: Id, skin: Skin<Id, IndexId>, transforms: Id, positions: Id },
     Features { v: Id, rest: Id, reference: Reference<Id, IndexId>, nodes: Id, potentials: Id },
     Attend { graph: usize, heads: usize, projected: Id, potentials: Id, edge: Id, attended: Id },
     Gate { attended: Id, projected: Id, layer: Layer<Id>, output: Id },
+}
+
+impl Operation {
+    fn output(&self) -> Id {
+        match self {
+            Self::Linear { y, .. } => *y,
+            Self::Blend { template, .. } => *template,
+            Self::Add { total, .. } => *total,
+            Self::Skin { positions, .. } => *positions,
+            Self::Features { nodes, .. } => *nodes,
+            Self::Attend { attended, .. } => *attended,
+            Self::Gate { output, .. } => *output,
+        }
+    }
+
+    /// The inputs that the operation's gradient writes to.
+    fn learns_from(&self) -> Vec<Id> {
+        match self {
+            Self::Linear { x, .. } => vec![*x],
+            Self::Blend { weights, .. } => vec![*weights],
+            Self::Add { residual, .. } => vec![*residual],
+            Self::Skin { rest, .. } => vec![*rest],
+            Self::Features { .. } => Vec::new(),
+            Self::Attend { projected, .. } => vec![*projected],
+            Self::Gate { attended, projected, .. } => vec![*attended, *projected],
+        }
+    }
 }
 
 /// The recorded forward pass.
@@ -45,8 +73,10 @@ pub struct Lane {
     pub(super) scratch: gradient::Scratch,
     /// Activations; buffers of the model stay empty here, they are shared.
     values: Vec<Vec<f32>>,
-    /// Gradients: of activations for this sample, of parameters summed over samples. Empty where none is wanted.
+    /// Gradients: of parameters by buffer, summed over samples; of activations by slot, for this sample. Empty where none is wanted.
     gradients: Vec<Vec<f32>>,
+    /// Where the gradient of a buffer is.
+    slots: Vec<usize>,
 }
 
 /// Weights and constants of the model by buffer, shared by all lanes.
@@ -65,13 +95,43 @@ impl Tape {
     pub fn lane(&self, shared: &Shared) -> Lane {
         let shared = shared.0.len();
         let own = |(i, length): (usize, &usize)| vec![0.0; if i < shared { 0 } else { *length }];
-        let gradient = |(length, trainable): (&usize, &bool)| vec![0.0; if *trainable { *length } else { 0 }];
+        let (slots, lengths) = self.slots(shared);
         Lane {
             level: Level::new(),
             scratch: gradient::Scratch::default(),
             values: self.lengths.iter().enumerate().map(own).collect(),
-            gradients: self.lengths.iter().zip(&self.trainable).map(gradient).collect(),
+            gradients: lengths.into_iter().map(|length| vec![0.0; length]).collect(),
+            slots,
         }
+    }
+
+    /// Slot of every buffer's gradient, and the slots' lengths. On the way back, a gradient is done with after the operation that made
+    /// its buffer: its slot serves the next of the same length, so that the cache holds more of what is worked on.
+    fn slots(&self, shared: usize) -> (Vec<usize>, Vec<usize>) {
+        let learning = |i: usize| if self.trainable[i] { self.lengths[i] } else { 0 };
+        let mut slots: Vec<usize> = (0..self.lengths.len()).collect();
+        let mut lengths: Vec<usize> = (0..self.lengths.len()).map(learning).collect();
+        let mut read = vec![false; self.lengths.len()];
+        let operations = || self.operations.iter().filter(|(_, learns)| *learns);
+        operations().for_each(|(operation, _)| operation.learns_from().iter().for_each(|id| read[id.0] = true));
+        let mut free: Vec<usize> = Vec::new();
+        let mut placed = vec![false; self.lengths.len()];
+        for (operation, _) in operations().rev() {
+            for id in operation.learns_from().into_iter().filter(|id| id.0 >= shared && self.trainable[id.0]) {
+                if std::mem::replace(&mut placed[id.0], true) {
+                    continue;
+                }
+                if let Some(at) = free.iter().position(|slot| lengths[*slot] == self.lengths[id.0]) {
+                    lengths[id.0] = 0;
+                    slots[id.0] = free.swap_remove(at);
+                }
+            }
+            // A loss writes its gradient before the first operation: that slot is never another's.
+            if read[operation.output().0] {
+                free.push(slots[operation.output().0]);
+            }
+        }
+        (slots, lengths)
     }
 
     /// Runs the recorded operations.
@@ -123,20 +183,19 @@ impl Lane {
         &mut self.values[id.0]
     }
 
-    /// A gradient.
+    /// A gradient; empty where none is wanted.
     pub fn gradient(&self, id: Id) -> &[f32] {
-        &self.gradients[id.0]
+        &self.gradients[self.slots[id.0]]
     }
 
     /// A gradient, to be written; empty where none is wanted.
     pub fn gradient_mut(&mut self, id: Id) -> &mut Vec<f32> {
-        &mut self.gradients[id.0]
+        &mut self.gradients[self.slots[id.0]]
     }
 
-    /// Clears the gradients of the activations, and those of the parameters as well with `all`.
-    pub fn clear(&mut self, shared: &Shared, all: bool) {
-        let first = if all { 0 } else { shared.0.len() };
-        self.gradients[first..].iter_mut().for_each(|gradient| gradient.fill(0.0));
+    /// Exchanges the gradients of `parameters` with `sums`: lanes may share the room for everything else.
+    pub fn exchange(&mut self, parameters: &[Id], sums: &mut [Vec<f32>]) {
+        parameters.iter().zip(sums).for_each(|(id, sum)| std::mem::swap(sum, &mut self.gradients[id.0]));
     }
 
     pub(super) fn take_value(&mut self, id: Id) -> Vec<f32> {
@@ -144,7 +203,15 @@ impl Lane {
     }
 
     pub(super) fn take_gradient(&mut self, id: Id) -> Vec<f32> {
-        std::mem::take(&mut self.gradients[id.0])
+        std::mem::take(&mut self.gradients[self.slots[id.0]])
+    }
+}
+
+impl Tape {
+    /// rest + residual -> total, of any shape. No operation of the network, but of the baselines it is compared with.
+    pub fn add(&mut self, rest: &Id, residual: &Id, total: &mut Id) {
+        let operation = Operation::Add { rest: *rest, residual: *residual, total: *total };
+        self.record(&[*residual], *total, operation);
     }
 }
 
@@ -228,6 +295,14 @@ impl Device for Tape {
     fn normals(&mut self, _positions: &Id, _triangles: &[u32], _normals: &mut Id) {
         // Not part of the loss (network.md §6), so there is nothing to remember.
     }
+
+    fn collide(&mut self, _: &Body<Id, IndexId>, _posed: &Id, _normals: &Id, _positions: &Id, _push: &mut Id) {
+        // Nor is repair.
+    }
+
+    fn spread(&mut self, _graph: &Graph<IndexId>, _push: &Id, _before: &Id, _after: &mut Id) {}
+
+    fn lift(&mut self, _displacement: &Id, _positions: &mut Id) {}
 
     fn surface(&mut self, _vertex: &[u32], _positions: &Id, _normals: &Id, _drawn: &mut Drawn<Id>) {
         // Nor is this.

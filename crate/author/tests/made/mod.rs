@@ -1,4 +1,5 @@
 //! Files for the tests of the binary: a small character and garment, made here, and ways to spoil them; a folder to run `ctsn` in.
+#![allow(dead_code)] // each test takes what it needs
 
 use ctsn_author::gltf::{self, Appearance};
 use ctsn_author::rig::{Character, Clip, Garment, Joint, Mesh};

@@ -4,17 +4,20 @@
 pub mod attend;
 pub mod blend;
 pub mod body_frame;
+pub mod collide;
 pub mod exp;
 pub mod features;
 pub mod gate;
+pub mod lift;
 pub mod linear;
 pub mod normals;
 pub mod skin;
+pub mod spread;
 pub mod surface;
 pub mod vector;
 
 use crate::device::{Activation, Device, Space};
-use crate::model::{Layer, Linear, Reference, Sizes, Skin};
+use crate::model::{Body, Layer, Linear, Reference, Sizes, Skin};
 use crate::network::Drawn;
 use crate::pose::Rig;
 use crate::topology::Graph;
@@ -117,6 +120,31 @@ impl Device for Cpu {
 
     fn normals(&mut self, positions: &Vec<f32>, triangles: &[u32], normals: &mut Vec<f32>) {
         normals::normals(positions, triangles, normals);
+    }
+
+    fn collide(
+        &mut self,
+        body: &Body<Vec<f32>, Vec<u32>>,
+        posed: &Vec<f32>,
+        normals: &Vec<f32>,
+        positions: &Vec<f32>,
+        push: &mut Vec<f32>,
+    ) {
+        let posed = collide::Posed {
+            positions: posed.as_chunks().0,
+            normals: normals.as_chunks().0,
+            offsets: &body.fans.offsets,
+            fans: body.fans.corners.as_chunks().0,
+        };
+        collide::collide(positions, &posed, &body.seeds, push);
+    }
+
+    fn spread(&mut self, graph: &Graph<Vec<u32>>, push: &Vec<f32>, before: &Vec<f32>, after: &mut Vec<f32>) {
+        spread::spread(graph, push, before, after);
+    }
+
+    fn lift(&mut self, displacement: &Vec<f32>, positions: &mut Vec<f32>) {
+        lift::lift(displacement, positions);
     }
 
     fn surface(&mut self, vertex: &[u32], positions: &Vec<f32>, normals: &Vec<f32>, drawn: &mut Drawn<Vec<f32>>) {

@@ -1,11 +1,13 @@
 //! The model: every weight of the network, on any storage `B` (f32) and `I` (u32). network.md §8.
 //! The files of this folder are the only place that knows tensor names and shapes.
 
+mod body;
 mod read;
 mod write;
 
 use crate::pose::Rig;
 use crate::topology::Graph;
+pub use body::{Body, Fans};
 pub use write::Storage;
 
 /// A model on the host, as a file holds it.
@@ -122,6 +124,8 @@ pub struct Model<B, I> {
     pub mesh: B,
     /// What is drawn, when it differs from the cloth mesh.
     pub surface: Option<Surface>,
+    /// What the cloth is kept out of.
+    pub body: Option<Body<B, I>>,
     /// What the model was trained on: a JSON object, free in form.
     pub training: Option<String>,
 }
@@ -182,11 +186,12 @@ impl<B, I> Model<B, I> {
             vertex: self.vertex.iter().map(|layer| layer.map(values)).collect(),
             mesh: values(&self.mesh),
             surface: self.surface.clone(),
+            body: self.body.as_ref().map(|body| body.map(values, indices)),
             training: self.training.clone(),
         }
     }
 
-    /// The trainable arrays, in a fixed order: W_C, Φ, B, graph layers, vertex MLP, M. network.md §6.
+    /// The trainable arrays, in a fixed order: W_C, B, M, Φ, vertex MLP, graph layers. network.md §6.
     pub fn parameters(&self) -> Vec<&B> {
         let mut list = vec![&self.skin.weights, &self.skeleton, &self.mesh];
         for layer in self.embedding.iter().chain(&self.vertex).chain(self.layers.iter().map(|layer| &layer.project)) {

@@ -1,6 +1,6 @@
 //! Model file -> model, checking every name, shape and index. network.md §8.
 
-use super::{HostModel, Layer, Linear, Model, Reference, Sizes, Skin, Surface};
+use super::{Body, HostModel, Layer, Linear, Model, Reference, Sizes, Skin, Surface};
 use crate::file::Tensors;
 use crate::pose::{Frame, Rig};
 use crate::topology::Graph;
@@ -60,6 +60,7 @@ impl HostModel {
             vertex: mlp(&file, "vertex", features, Some(k))?,
             mesh,
             surface: surface(&file, n)?,
+            body: Body::read(&file, n, joints)?,
             training: file.metadata.get("training").cloned(),
             rig: rig(&file, description)?,
         })

@@ -15,13 +15,13 @@ pub enum Storage {
     F16,
 }
 
-struct Writer {
+pub(super) struct Writer {
     file: Tensors,
     storage: Storage,
 }
 
 impl Writer {
-    fn fixed(&mut self, name: &str, shape: &[usize], values: &[f32]) {
+    pub(super) fn fixed(&mut self, name: &str, shape: &[usize], values: &[f32]) {
         self.file.tensors.insert(name.to_owned(), Tensor::f32(shape, values));
     }
 
@@ -33,7 +33,7 @@ impl Writer {
         self.file.tensors.insert(name.to_owned(), tensor);
     }
 
-    fn indices(&mut self, name: &str, shape: &[usize], values: &[u32]) {
+    pub(super) fn indices(&mut self, name: &str, shape: &[usize], values: &[u32]) {
         self.file.tensors.insert(name.to_owned(), Tensor::u32(shape, values));
     }
 
@@ -55,6 +55,9 @@ impl HostModel {
         self.write_cloth(&mut writer);
         self.write_reference(&mut writer);
         self.write_network(&mut writer);
+        if let Some(body) = &self.body {
+            body.write(self.sizes.vertices, &mut writer);
+        }
         writer.file.to_bytes()
     }
 

@@ -1,10 +1,12 @@
 //! The network, written once: the paper's figure as a function over any device. network.md §2–4.
 
+mod collide;
 mod embedding;
 mod graph;
 
 use crate::device::{Device, Space};
 use crate::model::Model;
+pub use collide::Collision;
 
 /// Which part of the network runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,6 +52,8 @@ pub struct Activations<B> {
     pub template: B,
     /// Predicted positions [n, 3].
     pub positions: B,
+    /// What the repair of penetration computes, where the model has a body.
+    pub collision: Option<Collision<B>>,
     /// Unit normals of the predicted positions [n, 3].
     pub normals: B,
     /// The same of the drawn vertices, where the model tells them apart from the cloth's.
@@ -98,6 +102,7 @@ impl<B> Activations<B> {
             coarse: buffer("skeleton", n * 3),
             template: buffer("template", n * 3),
             positions: buffer("positions", n * 3),
+            collision: model.body.as_ref().map(|body| Collision::new(body.vertices, n, &mut buffer)),
             normals: buffer("normals", n * 3),
             drawn: model.surface.as_ref().filter(|surface| !surface.vertex.is_empty()).map(|surface| Drawn {
                 positions: buffer("surface", surface.vertex.len() * 3),
@@ -123,6 +128,9 @@ impl<B> Activations<B> {
 pub fn frame<D: Device>(device: &mut D, model: &DeviceModel<D>, streams: Streams, a: &mut Activations<D::Buffer>) {
     device.body_frame(&model.rig, &a.joints, &mut a.body_frame, &mut a.pose);
     forward(device, model, streams, Space::World, a);
+    if streams == Streams::Both {
+        collide::collide(device, model, a);
+    }
     device.normals(&a.positions, &model.triangles, &mut a.normals);
     if let (Some(surface), Some(drawn)) = (&model.surface, &mut a.drawn) {
         device.surface(&surface.vertex, &a.positions, &a.normals, drawn);

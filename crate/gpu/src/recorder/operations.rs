@@ -2,8 +2,9 @@
 
 use super::{Id, IndexId, Recorder, Slot};
 use crate::pack::{self, whole};
+use ctsn_core::cpu::{collide, spread};
 use ctsn_core::device::{Activation, Device, Space};
-use ctsn_core::model::{Layer, Linear, Reference, Sizes, Skin};
+use ctsn_core::model::{Body, Layer, Linear, Reference, Sizes, Skin};
 use ctsn_core::network::Drawn;
 use ctsn_core::pose::{Frame, Rig};
 use ctsn_core::topology::Graph;
@@ -162,12 +163,58 @@ impl Device for Recorder<'_> {
         let (offsets, corners) = pack::corners(n, triangles);
         let operands = [
             self.input(*positions),
-            self.pack(("normal offsets", 0), |_| offsets),
-            self.pack(("normal corners", 0), |_| corners),
+            self.pack(("normal offsets", positions.0), |_| offsets),
+            self.pack(("normal corners", positions.0), |_| corners),
             self.output(*normals, 3, 3),
         ];
         let params = shaders::Normals { vertices: n as u32 };
         self.dispatch(&shaders::NORMALS, params, &operands, [n, 1], *normals, 18 * triangles.len() + 9 * n);
+    }
+
+    fn collide(&mut self, body: &Body<Id, IndexId>, posed: &Id, normals: &Id, positions: &Id, push: &mut Id) {
+        let n = self.length(*positions) / 3;
+        let (offsets, corners, seeds) = (body.fans.offsets.0, body.fans.corners.0, body.seeds.0);
+        let width = self.indices[seeds].len() / n;
+        let operands = [
+            self.input(*posed),
+            self.input(*normals),
+            self.pack(("fan offsets", offsets), |this| this.indices[offsets].to_vec()),
+            self.pack(("fan corners", corners), |this| this.indices[corners].to_vec()),
+            self.pack(("seeds", seeds), |this| pack::slots(&this.indices[seeds], width)),
+            self.input(*positions),
+            self.output(*push, 3, 3),
+        ];
+        let params = shaders::Collide {
+            vertices: n as u32,
+            seeds: width as u32,
+            steps: collide::STEPS as u32,
+            gap: collide::GAP,
+            depth: collide::DEPTH,
+            steepest: collide::STEEPEST,
+        };
+        // A walk of about two steps, six triangles around each vertex.
+        self.dispatch(&shaders::COLLIDE, params, &operands, [n, 1], *push, n * (8 * (width + 12) + 6 * 60));
+    }
+
+    fn spread(&mut self, graph: &Graph<IndexId>, push: &Id, before: &Id, after: &mut Id) {
+        let n = self.length(*push) / 3;
+        let operands = [
+            self.pack(("offsets", graph.offsets.0), |this| this.indices[graph.offsets.0].to_vec()),
+            self.pack(("neighbours", graph.neighbours.0), |this| this.indices[graph.neighbours.0].to_vec()),
+            self.input(*push),
+            self.input(*before),
+            self.output(*after, 3, 3),
+        ];
+        let flops = 3 * self.indices[graph.neighbours.0].len() + 20 * n;
+        let params = shaders::Spread { vertices: n as u32, follow: spread::FOLLOW };
+        self.dispatch(&shaders::SPREAD, params, &operands, [n, 1], *after, flops);
+    }
+
+    fn lift(&mut self, displacement: &Id, positions: &mut Id) {
+        let numbers = self.length(*positions);
+        let operands = [self.input(*displacement), self.output(*positions, 3, 3)];
+        let params = shaders::Lift { numbers: numbers as u32 };
+        self.dispatch(&shaders::LIFT, params, &operands, [numbers, 1], *displacement, numbers);
     }
 
     fn surface(&mut self, vertex: &[u32], positions: &Id, normals: &Id, drawn: &mut Drawn<Id>) {

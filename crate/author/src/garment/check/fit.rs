@@ -2,7 +2,7 @@
 
 use super::{Findings, list};
 use crate::Result;
-use crate::garment::{hull, solid::closest_point};
+use crate::garment::{SKIN, hull, solid::closest_point};
 use crate::gltf::Source;
 use crate::rig::{Character, Mesh};
 use glam::DVec3;
@@ -63,7 +63,7 @@ pub(super) fn check(character: &Character, mesh: &Mesh, source: &Source, finding
 
 /// Where every vertex is, by the body's outer skin.
 fn places(character: &Character, mesh: &Mesh) -> Result<Vec<Place>> {
-    let (skin, gap) = hull(character)?;
+    let (skin, gap) = hull(character, SKIN)?;
     let normals = skin.normals(&skin.positions);
     let corners = |t: &[u32; 3]| t.map(|v| skin.positions[v as usize]);
     let faces: Vec<([DVec3; 3], DVec3)> = skin

@@ -2,7 +2,7 @@
 
 use ctsn_core::cpu::Level;
 use ctsn_core::cpu::gate::EPSILON;
-use ctsn_core::cpu::vector::{axpy, dot};
+use ctsn_core::cpu::vector::{axpy, dot, sum};
 use fearless_simd::{Simd, dispatch};
 
 /// What the forward operation read and wrote.
@@ -19,7 +19,7 @@ pub struct Inputs<'a> {
     pub output: &'a [f32],
 }
 
-/// g [n, F] -> dattended [n, F], dprojected [n, 4F] (r columns), dgate [3F], dnorm weight and bias [F].
+/// g [n, F] -> dattended [n, F] and dprojected [n, 4F] (r columns), overwritten; dgate [3F], dnorm weight and bias [F].
 pub fn gate(level: Level, inputs: &Inputs, g: &[f32], targets: [&mut [f32]; 5]) {
     dispatch!(level, simd => kernel(simd, inputs, g, targets));
 }
@@ -28,19 +28,19 @@ pub fn gate(level: Level, inputs: &Inputs, g: &[f32], targets: [&mut [f32]; 5]) 
 fn kernel<S: Simd>(simd: S, inputs: &Inputs, g: &[f32], targets: [&mut [f32]; 5]) {
     let [dattended, dprojected, dgate, dnorm_weight, dnorm_bias] = targets;
     let features = inputs.norm_weight.len();
-    let mut difference = vec![0.0; features];
-    let mut z = vec![0.0; features];
-    let mut dz = vec![0.0; features];
+    let [w_attended, w_skip, w_difference] = [0, 1, 2].map(|part| &inputs.gate[part * features..][..features]);
+    let [mut difference, mut z, mut dz] = [(); 3].map(|()| vec![0.0; features]);
     for (i, g) in g.chunks_exact(features).enumerate() {
         let attended = &inputs.attended[i * features..][..features];
         let skip = &inputs.projected[(i * 4 + 3) * features..][..features];
         let output = &inputs.output[i * features..][..features];
-        (0..features).for_each(|c| difference[c] = attended[c] - skip[c]);
-        let [w_attended, w_skip, w_difference] = [0, 1, 2].map(|part| &inputs.gate[part * features..][..features]);
+        let pairs = difference.iter_mut().zip(attended).zip(skip);
+        pairs.for_each(|((difference, attended), skip)| *difference = attended - skip);
         let logit = dot(simd, w_attended, attended) + dot(simd, w_skip, skip) + dot(simd, w_difference, &difference);
         let beta = 1.0 / (1.0 + (-logit).exp());
-        (0..features).for_each(|c| z[c] = attended[c] - beta * difference[c]);
-        normalise(&mut z, &mut dz, inputs.norm_weight, output, g, dnorm_weight, dnorm_bias);
+        z.copy_from_slice(attended);
+        axpy(simd, -beta, &difference, &mut z);
+        normalise(simd, &mut z, &mut dz, inputs.norm_weight, output, g, dnorm_weight, dnorm_bias);
         // β falls on the difference: dβ = -dz · (ĥ - r).
         let dlogit = -dot(simd, &dz, &difference) * beta * (1.0 - beta);
         for (part, x) in [attended, skip, &difference].into_iter().enumerate() {
@@ -48,16 +48,18 @@ fn kernel<S: Simd>(simd: S, inputs: &Inputs, g: &[f32], targets: [&mut [f32]; 5]
         }
         let dattended = &mut dattended[i * features..][..features];
         let dskip = &mut dprojected[(i * 4 + 3) * features..][..features];
-        for c in 0..features {
-            dattended[c] += (1.0 - beta) * dz[c] + dlogit * (w_attended[c] + w_difference[c]);
-            dskip[c] += beta * dz[c] + dlogit * (w_skip[c] - w_difference[c]);
+        for (target, share, own, sign) in [(dattended, 1.0 - beta, w_attended, 1.0), (dskip, beta, w_skip, -1.0)] {
+            let parts = target.iter_mut().zip(&dz).zip(own.iter().zip(w_difference));
+            parts.for_each(|((target, dz), (own, both))| *target = share * dz + dlogit * (own + sign * both));
         }
     }
 }
 
 /// LayerNorm and ReLU of one row backwards: z becomes (z - μ)/σ, dz its gradient.
 #[inline(always)]
-fn normalise(
+#[expect(clippy::too_many_arguments, reason = "operands of one inner kernel")]
+fn normalise<S: Simd>(
+    simd: S,
     z: &mut [f32],
     dz: &mut [f32],
     weight: &[f32],
@@ -67,20 +69,15 @@ fn normalise(
     dbias: &mut [f32],
 ) {
     let count = z.len() as f32;
-    let mean = z.iter().sum::<f32>() / count;
-    let variance = z.iter().map(|z| (z - mean) * (z - mean)).sum::<f32>() / count;
-    let inverse = 1.0 / (variance + EPSILON).sqrt();
-    let (mut sum, mut product) = (0.0, 0.0);
-    for c in 0..z.len() {
-        z[c] = (z[c] - mean) * inverse;
-        let g = if output[c] > 0.0 { g[c] } else { 0.0 };
-        dweight[c] += g * z[c];
-        dbias[c] += g;
-        dz[c] = g * weight[c];
-        sum += dz[c];
-        product += dz[c] * z[c];
-    }
-    for c in 0..z.len() {
-        dz[c] = inverse * (dz[c] - sum / count - z[c] * product / count);
-    }
+    let mean = sum(simd, z) / count;
+    z.iter_mut().for_each(|z| *z -= mean);
+    let inverse = 1.0 / (dot(simd, z, z) / count + EPSILON).sqrt();
+    z.iter_mut().for_each(|z| *z *= inverse);
+    let passed = dz.iter_mut().zip(output).zip(g);
+    passed.for_each(|((dz, output), g)| *dz = if *output > 0.0 { *g } else { 0.0 });
+    axpy(simd, 1.0, dz, dbias);
+    dweight.iter_mut().zip(&*dz).zip(&*z).for_each(|((dweight, g), z)| *dweight += g * z);
+    dz.iter_mut().zip(weight).for_each(|(dz, weight)| *dz *= weight);
+    let (mean, along) = (sum(simd, dz) / count, dot(simd, dz, z) / count);
+    dz.iter_mut().zip(&*z).for_each(|(dz, z)| *dz = inverse * (*dz - mean - z * along));
 }

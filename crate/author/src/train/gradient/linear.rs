@@ -8,7 +8,7 @@ pub fn mask(y: &[f32], dy: &mut [f32]) {
     dy.iter_mut().zip(y).filter(|(_, y)| **y <= 0.0).for_each(|(dy, _)| *dy = 0.0);
 }
 
-/// x [rows, inputs], weight [inputs, outputs], dy [rows, outputs] -> dx (empty: not wanted), dweight, dbias.
+/// x [rows, inputs], weight [inputs, outputs], dy [rows, outputs] -> dx (overwritten; empty: not wanted), dweight, dbias.
 pub fn linear(x: &[f32], weight: &[f32], dy: &[f32], dx: &mut [f32], dweight: &mut [f32], dbias: &mut [f32]) {
     let outputs = dbias.len();
     let (rows, inputs) = (dy.len() / outputs, weight.len() / outputs);
@@ -21,6 +21,6 @@ pub fn linear(x: &[f32], weight: &[f32], dy: &[f32], dx: &mut [f32], dweight: &m
     matmul(dweight, Accum::Add, x.transpose(), dy, 1.0, Par::Seq);
     if !dx.is_empty() {
         let dx = MatMut::from_row_major_slice_mut(dx, rows, inputs);
-        matmul(dx, Accum::Add, dy, matrix(weight, inputs, outputs).transpose(), 1.0, Par::Seq);
+        matmul(dx, Accum::Replace, dy, matrix(weight, inputs, outputs).transpose(), 1.0, Par::Seq);
     }
 }

@@ -1,5 +1,6 @@
 //! Gradients, one file per operation, named as the operation. `run` and `backward` hand a recorded operation its operands.
-//! Convention: a gradient is added to, never overwritten, except where a file says so.
+//! Convention: every activation is read by one operation that learns, so its gradient is overwritten; a parameter's is added to, over
+//! the samples of a lane.
 
 pub mod attend;
 pub mod blend;
@@ -33,6 +34,10 @@ pub(super) fn run(tape: &Tape, operation: &Operation, shared: &Shared, lane: &mu
                 let value = |id| lane.value(shared, id);
                 cpu::blend::blend(level, value(*weights), value(*basis), value(*rest), residual, template);
             });
+        }),
+        Operation::Add { rest, residual, total } => lane.write(*total, |lane, total| {
+            total.copy_from_slice(lane.value(shared, *rest));
+            cpu::lift::lift(lane.value(shared, *residual), total);
         }),
         Operation::Skin { rest, skin, transforms, positions } => lane.write(*positions, |lane, positions| {
             let value = |id| lane.value(shared, id);
@@ -91,6 +96,9 @@ pub(super) fn backward(tape: &Tape, operation: &Operation, shared: &Shared, lane
                 let (weights, basis) = (lane.value(shared, *weights), lane.value(shared, *basis));
                 blend::blend(lane.level, weights, basis, g, dweights, dbasis);
             });
+        }
+        Operation::Add { residual, total, .. } => {
+            lane.add_to(*total, [*residual], |_, g, [dresidual]| dresidual.copy_from_slice(g));
         }
         Operation::Skin { rest, skin, transforms, positions } => {
             lane.add_to(*positions, [*rest, skin.weights], |lane, g, [drest, dweights]| {

@@ -1,0 +1,106 @@
+//! The body a model carries for the repair of penetration: the character's outer skin, as much of it as the cloth comes near, and for
+//! every cloth vertex the places where it was seen. ARCHITECTURE.md, "Penetration".
+
+use crate::Result;
+use crate::dataset::{Sample, Setup};
+use crate::rig::{Character, Mesh, pose, vertices};
+use crate::simulate::{hull, to_body_frame};
+use ctsn_core::model::{Body, Fans, Skin};
+use ctsn_core::topology::Graph;
+use glam::DVec3;
+use kiddo::{ImmutableKdTree, SquaredEuclidean};
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+
+/// Vertices of the whole skin, about: twice as many triangles.
+const VERTICES: usize = 2600;
+/// Poses looked at, spread over the samples.
+const POSES: usize = 200;
+/// Cloth further from the skin says nothing about it, metres.
+const REACH: f64 = 0.15;
+/// Rings of vertices around what the cloth came near that are kept: repaired cloth must not meet the border.
+const RINGS: usize = 3;
+/// Places per cloth vertex from which the closest one is searched.
+const SEEDS: usize = 4;
+
+/// The body for the cloth of `setup`, as `samples` wear it.
+pub fn body(setup: &Setup, samples: &[&Sample]) -> Result<Body<Vec<f32>, Vec<u32>>> {
+    let triangles = setup.triangles.as_chunks::<3>().0.to_vec();
+    let cloth = Mesh { positions: vertices(&setup.template), triangles };
+    let skin = hull(&setup.character()?, &cloth, VERTICES)?;
+    let step = samples.len().div_ceil(POSES).max(1);
+    let poses: Vec<&&Sample> = samples.iter().step_by(step).collect();
+    let nearest = |sample: &&&Sample| nearest(&skin, sample);
+    let seen: Vec<Vec<Option<u32>>> = poses.par_iter().map(nearest).collect::<Result<_>>()?;
+    let mut visits = vec![BTreeMap::new(); cloth.positions.len()];
+    for (vertex, place) in seen.iter().flat_map(|seen| seen.iter().enumerate()) {
+        place.iter().for_each(|place| *visits[vertex].entry(*place).or_insert(0) += 1);
+    }
+    let seeds: Vec<[u32; SEEDS]> = visits.iter().map(|visits| spread(&skin.body.positions, visits)).collect();
+    Ok(cut(&skin, &visits, &seeds))
+}
+
+/// The skin vertex closest to each cloth vertex of a pose.
+fn nearest(skin: &Character, sample: &Sample) -> Result<Vec<Option<u32>>> {
+    let posed = skin.pose_body(&to_body_frame(skin, &pose(&sample.joints)));
+    let points: Vec<[f64; 3]> = posed.iter().map(|point| point.to_array()).collect();
+    let tree: ImmutableKdTree<f64, 3> = ImmutableKdTree::new_from_slice(&points)
+        .map_err(|error| crate::Error::Character(format!("nearest-vertex search: {error:?}")))?;
+    let place = |vertex: &DVec3| {
+        let found = tree.query(&vertex.to_array()).nearest_one::<SquaredEuclidean<f64>>().execute();
+        (found.distance < REACH * REACH).then_some(found.item as u32)
+    };
+    Ok(vertices(&sample.truth).iter().map(place).collect())
+}
+
+/// Up to [`SEEDS`] of the places: the one seen most, then always the one furthest from those chosen; the first of them again for want
+/// of others.
+fn spread(positions: &[DVec3], visits: &BTreeMap<u32, usize>) -> [u32; SEEDS] {
+    let most = visits.iter().max_by(|a, b| a.1.cmp(b.1).then(b.0.cmp(a.0))).map_or(0, |most| *most.0);
+    let mut seeds = [most; SEEDS];
+    for chosen in 1..SEEDS {
+        let place = |vertex: u32| positions[vertex as usize];
+        let gap = |vertex: &u32| {
+            let distances = seeds[..chosen].iter().map(|seed| place(*seed).distance_squared(place(*vertex)));
+            distances.fold(f64::INFINITY, f64::min)
+        };
+        let furthest = visits.keys().max_by(|a, b| gap(a).total_cmp(&gap(b)));
+        seeds[chosen] = furthest.copied().unwrap_or(most);
+    }
+    seeds
+}
+
+/// The part of the skin that was seen, [`RINGS`] rings around it included.
+fn cut(skin: &Character, visits: &[BTreeMap<u32, usize>], seeds: &[[u32; SEEDS]]) -> Body<Vec<f32>, Vec<u32>> {
+    let Mesh { positions, triangles } = &skin.body;
+    let graph = Graph::new(positions.len(), triangles.as_flattened());
+    let mut kept = vec![false; positions.len()];
+    // Cloth that was never near has the first vertex for a seed.
+    let places = visits.iter().flat_map(|visits| visits.keys()).chain(seeds.as_flattened());
+    places.for_each(|place| kept[*place as usize] = true);
+    for _ in 0..RINGS {
+        let before = kept.clone();
+        (0..kept.len()).for_each(|i| kept[i] |= graph.of(i).iter().any(|j| before[*j as usize]));
+    }
+    let list: Vec<usize> = (0..kept.len()).filter(|i| kept[*i]).collect();
+    let mut place = vec![0; kept.len()];
+    list.iter().enumerate().for_each(|(new, old)| place[*old] = new as u32);
+    let whole = triangles.iter().filter(|triangle| triangle.iter().all(|i| kept[*i as usize]));
+    let triangles: Vec<u32> = whole.flatten().map(|i| place[*i as usize]).collect();
+    let width = list.iter().map(|i| skin.weights[*i].len()).max().unwrap_or(1).max(1);
+    let mut slots = Skin { joints: Vec::new(), weights: Vec::new(), width };
+    for (row, vertex) in list.iter().enumerate() {
+        slots.joints.extend(skin.weights[*vertex].iter().map(|(joint, _)| *joint as u32));
+        slots.weights.extend(skin.weights[*vertex].iter().map(|(_, weight)| *weight as f32));
+        slots.joints.resize((row + 1) * width, 0);
+        slots.weights.resize((row + 1) * width, 0.0);
+    }
+    Body {
+        vertices: list.len(),
+        rest: list.iter().flat_map(|i| positions[*i].as_vec3().to_array()).collect(),
+        skin: slots,
+        fans: Fans::new(list.len(), &triangles),
+        triangles,
+        seeds: seeds.as_flattened().iter().map(|seed| place[*seed as usize]).collect(),
+    }
+}

@@ -1,0 +1,66 @@
+//! Errors of one way to predict, gathered over frames. Units of the network: metres, degrees, seconds.
+
+use super::judge::Frame;
+use serde::{Deserialize, Serialize};
+
+/// A figure over frames.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Statistic {
+    /// Mean over frames.
+    pub mean: f64,
+    /// Standard deviation over frames.
+    pub std: f64,
+    /// 95 % of the frames lie at or below.
+    pub p95: f64,
+}
+
+/// Errors of one way to predict.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Errors {
+    /// E_dist, metres: the mean over vertices of `‖x_p - x_g‖`, over frames.
+    pub distance: Statistic,
+    /// E_norm, degrees: the mean over vertices of the angle between vertex normals, over frames.
+    pub normal: Statistic,
+    /// Mean E_dist in millimetres per metre of the figure, to compare characters of different size.
+    pub scaled: f64,
+    /// Share of vertices inside the body, mean over frames. As the simulator judges: what lies more than 50 mm behind a face is taken
+    /// to be on the far side of another part, for skinned bodies cut into themselves.
+    pub penetrating: f64,
+    /// Greatest depth inside the body in any frame, metres.
+    pub depth: f64,
+    /// Mean over edges and frames of `|l_p - l_g| / l_rest`: lengths predicted and true, against the length at rest.
+    pub stretch: f64,
+    /// Mean acceleration of vertices, m/s²: see [`super::jitter`]; `None` where no three frames follow each other.
+    pub jitter: Option<f64>,
+}
+
+impl Statistic {
+    /// Over `values`; zero of none.
+    pub fn over(values: impl Iterator<Item = f64>) -> Self {
+        let mut values: Vec<f64> = values.collect();
+        values.sort_by(f64::total_cmp);
+        let count = values.len().max(1) as f64;
+        let mean = values.iter().sum::<f64>() / count;
+        let variance = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / count;
+        // Nearest rank: the least value that 95 % of them do not exceed.
+        let rank = (values.len() * 95).div_ceil(100).saturating_sub(1);
+        Self { mean, std: variance.sqrt(), p95: values.get(rank).copied().unwrap_or_default() }
+    }
+}
+
+impl Errors {
+    /// Of `frames`, on a figure of `size` metres.
+    pub(super) fn over(frames: &[Frame], jitter: Option<f64>, size: f64) -> Self {
+        let over = |part: fn(&Frame) -> f64| Statistic::over(frames.iter().map(part));
+        let distance = over(|frame| frame.distance);
+        Self {
+            distance,
+            normal: over(|frame| frame.normal),
+            scaled: 1e3 * distance.mean / size,
+            penetrating: over(|frame| frame.penetrating).mean,
+            depth: frames.iter().map(|frame| frame.depth).fold(0.0, f64::max),
+            stretch: over(|frame| frame.stretch).mean,
+            jitter,
+        }
+    }
+}

@@ -1,0 +1,96 @@
+//! Training from the first epoch to the last: validation after every epoch, the best parameters kept, checkpoints, and the reasons to
+//! stop before the end: no gain, no time left, divergence.
+
+use super::{Loss, Trainer, curve};
+use crate::dataset::Sample;
+use crate::{Error, Result};
+pub use curve::Row;
+use std::path::PathBuf;
+
+/// Epochs between checkpoints.
+const CHECKPOINT: usize = 5;
+/// A loss this many times the error of the untrained model has exploded.
+const EXPLOSION: f32 = 10.0;
+
+/// Where a training leaves its traces.
+#[derive(Clone, Debug)]
+pub struct Files {
+    /// Checkpoint, to go on from after an interruption.
+    pub checkpoint: PathBuf,
+    /// Learning curve (CSV).
+    pub curve: PathBuf,
+}
+
+/// Why a training ended.
+#[derive(Debug)]
+pub enum End {
+    /// All epochs done, or the time is up.
+    Done,
+    /// No better validation error for so many epochs as the settings' patience.
+    NoGain,
+    /// The loss was no number any more, or exploded.
+    Diverged(Error),
+}
+
+impl Trainer {
+    /// Trains to the end, from wherever it stands; `progress(trainer, row)` after every epoch. [`Self::best`] is the outcome.
+    pub fn fit(&mut self, validation: &[&Sample], files: &Files, mut progress: impl FnMut(&Self, &Row)) -> Result<End> {
+        while !self.ended() {
+            let best = self.best_epoch();
+            if best.is_some_and(|best| self.epoch - best.epoch >= self.settings.patience) {
+                return Ok(End::NoGain);
+            }
+            let row = match self.round(validation) {
+                Err(error @ Error::Diverged(_)) => return Ok(End::Diverged(error)),
+                row => row?,
+            };
+            curve::write_curve(&files.curve, &self.curve)?;
+            if self.epoch.is_multiple_of(CHECKPOINT) {
+                self.save(&files.checkpoint)?;
+            }
+            progress(self, &row);
+        }
+        Ok(End::Done)
+    }
+
+    /// One epoch and its validation, noted in the curve.
+    pub(super) fn round(&mut self, validation: &[&Sample]) -> Result<Row> {
+        let untrained = match self.untrained {
+            Some(error) => error,
+            None => self.validate(validation)?.0,
+        };
+        self.untrained = Some(untrained);
+        let Loss { coarse, fine } = self.epoch(|_, _, _| {})?;
+        let (distance, normal) = self.validate(validation)?;
+        if fine > EXPLOSION * untrained || !distance.is_finite() {
+            return Err(Error::Diverged(format!(
+                "epoch {}: loss {fine} m, validation error {distance} m, {untrained} m before training",
+                self.epoch
+            )));
+        }
+        let rate = self.rate(self.epoch * self.steps());
+        let row = Row { epoch: self.epoch, coarse, fine, distance, normal, rate, seconds: self.seconds() };
+        if self.best_epoch().is_none_or(|best| distance < best.distance) {
+            self.best = self.parameters.iter().map(|id| self.shared.get(*id).to_vec()).collect();
+        }
+        self.curve.push(row);
+        Ok(row)
+    }
+
+    /// The epoch with the least E_dist on the validation slice.
+    pub fn best_epoch(&self) -> Option<Row> {
+        // The first of equals, as in `round`.
+        self.curve.iter().copied().min_by(|a, b| a.distance.total_cmp(&b.distance))
+    }
+
+    /// Whether the epochs are done or the time is up: an epoch that would end later than half its time past the budget is not begun.
+    fn ended(&self) -> bool {
+        match self.settings.budget {
+            None => self.epoch >= self.settings.epochs,
+            Some(budget) => {
+                let seconds = self.seconds();
+                seconds + 0.5 * seconds / self.epoch.max(1) as f64 >= budget.as_secs_f64()
+            }
+        }
+    }
+}

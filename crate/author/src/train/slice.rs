@@ -1,0 +1,45 @@
+//! The validation slice: a tenth of the training split, by which training is steered. The unseen clips never are.
+
+use crate::dataset::{Dataset, Sample, Split};
+use crate::{Error, Result};
+
+/// Fewest poses that are worth training on.
+const POSES: usize = 50;
+
+/// The training split in two.
+#[derive(Clone, Debug)]
+pub struct Slices<'a> {
+    /// What is learned from.
+    pub train: Vec<&'a Sample>,
+    /// What is predicted after every epoch: every tenth training clip; with fewer than ten clips, the last tenth of each.
+    pub validation: Vec<&'a Sample>,
+}
+
+/// Parts the training split of `dataset`, and checks that there is enough of everything.
+pub fn slices(dataset: &Dataset) -> Result<Slices<'_>> {
+    let (poses, clips) = (dataset.samples.len(), dataset.setup.description.clips.len());
+    if poses < POSES {
+        let rejected = dataset.rejected.len();
+        return Err(Error::Dataset(format!(
+            "wanted at least {POSES} poses, found {poses} ({rejected} were left out by the simulation)"
+        )));
+    }
+    let samples = dataset.split(Split::Train);
+    let mut lengths = vec![0; clips];
+    samples.iter().for_each(|sample| {
+        let length = &mut lengths[sample.record.clip];
+        *length = (*length).max(sample.record.frame + 1);
+    });
+    let watched = |sample: &&Sample| match clips {
+        0..10 => sample.record.frame * 10 >= lengths[sample.record.clip] * 9,
+        // Spread over the clips: neighbours are often of one kind.
+        _ => sample.record.clip % 10 == 4,
+    };
+    let (validation, train): (Vec<_>, Vec<_>) = samples.into_iter().partition(watched);
+    for (name, split) in [("training", &train), ("validation", &validation)] {
+        if split.is_empty() {
+            return Err(Error::Dataset(format!("the {name} split is empty: {poses} poses of {clips} clips in all")));
+        }
+    }
+    Ok(Slices { train, validation })
+}

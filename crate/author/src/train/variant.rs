@@ -1,0 +1,51 @@
+//! What of the network an ablation leaves out. Paper § Ablation Experiments.
+
+use ctsn_core::model::HostModel;
+
+/// A part of the network that an ablation leaves out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Part {
+    /// The skeleton-based residual stream: Δ_S = 0
+    Skeleton,
+    /// The mesh-based residual stream: Δ_M = 0, and the skeleton stream learns the truth itself
+    Mesh,
+    /// What is learned of the skin weights: ΔW_C = 0
+    Weights,
+}
+
+/// The parts that learn. What does not learn keeps its shape in the file: a residual stream's basis is zero.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Variant {
+    /// Δ_S.
+    pub skeleton: bool,
+    /// Δ_M.
+    pub mesh: bool,
+    /// ΔW_C.
+    pub weights: bool,
+}
+
+impl Variant {
+    /// The whole network.
+    pub const FULL: Self = Self { skeleton: true, mesh: true, weights: true };
+
+    /// The network without `parts`; (b) of the paper's figure is without all of them, (c) without mesh, (e) without weights.
+    pub fn without(parts: &[Part]) -> Self {
+        let learns = |part| !parts.contains(&part);
+        Self { skeleton: learns(Part::Skeleton), mesh: learns(Part::Mesh), weights: learns(Part::Weights) }
+    }
+
+    /// Whether array `i` of [`Model::parameters`](ctsn_core::model::Model::parameters) learns: W_C, B and M come first there.
+    /// With its basis at zero for good, a stream passes no gradient on, and all of it stays as it is.
+    pub(super) fn learns(self, i: usize) -> bool {
+        [self.weights, self.skeleton, self.mesh].get(i).is_none_or(|learns| *learns)
+    }
+
+    /// Silences the streams that are left out.
+    pub(super) fn silence(self, model: &mut HostModel) {
+        for (basis, learns) in [(&mut model.skeleton, self.skeleton), (&mut model.mesh, self.mesh)] {
+            if !learns {
+                basis.fill(0.0);
+            }
+        }
+    }
+}

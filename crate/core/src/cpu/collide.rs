@@ -1,0 +1,133 @@
+//! How far cloth vertices must move to lie outside the posed body: the gradient of `E_B` (paper, § Penetration Handling) in one step.
+//! The closest body point is searched by walking over the body's surface from a few seeds kept with the model, so that it depends on
+//! nothing but the pose, and a sleeve does not find the trunk beside its arm. Twin: shaders/collide.wgsl.
+
+use glam::Vec3;
+
+/// Distance at which cloth is kept from the body, metres.
+pub const GAP: f32 = 0.003;
+/// Cloth further inside is not moved, metres: that far, the nearest skin says nothing about where the cloth belongs.
+pub const DEPTH: f32 = 0.06;
+/// Steps of the walk over the body's surface.
+pub const STEPS: usize = 12;
+/// Least cosine between the way to the closest point and the normal there; less is beside the border of an open body.
+pub const STEEPEST: f32 = 0.5;
+
+/// The posed body: positions and unit normals [b, 3], and the triangles around each vertex.
+pub struct Posed<'a> {
+    /// Positions, metres [b, 3].
+    pub positions: &'a [[f32; 3]],
+    /// Unit vertex normals [b, 3].
+    pub normals: &'a [[f32; 3]],
+    /// Where the triangles around each vertex start in `fans` [b + 1].
+    pub offsets: &'a [u32],
+    /// The other two corners of each triangle around a vertex, in the triangle's order [3t, 2].
+    pub fans: &'a [[u32; 2]],
+}
+
+/// positions [n, 3], seeds [n, width] (body vertices) -> push [n, 3], the displacement to the gap; zero where there is room.
+pub fn collide(positions: &[f32], body: &Posed, seeds: &[u32], push: &mut [f32]) {
+    let positions = positions.as_chunks::<3>().0;
+    let seeds = seeds.chunks_exact(seeds.len() / positions.len().max(1));
+    for ((point, seeds), push) in positions.iter().zip(seeds).zip(push.as_chunks_mut::<3>().0) {
+        *push = body.push(Vec3::from_array(*point), seeds).unwrap_or_default().to_array();
+    }
+}
+
+impl Posed<'_> {
+    fn position(&self, vertex: u32) -> Vec3 {
+        Vec3::from_array(self.positions[vertex as usize])
+    }
+
+    /// The other two corners of the triangles around a vertex.
+    fn fan(&self, vertex: u32) -> &[[u32; 2]] {
+        &self.fans[self.offsets[vertex as usize] as usize..self.offsets[vertex as usize + 1] as usize]
+    }
+
+    /// The displacement that brings `point` to the gap; `None` where there is room.
+    fn push(&self, point: Vec3, seeds: &[u32]) -> Option<Vec3> {
+        let (foot, normal) = self.closest(point, self.walk(point, seeds))?;
+        let (height, distance) = ((point - foot).dot(normal), point.distance(foot));
+        let beside = distance > GAP && height.abs() < STEEPEST * distance;
+        (!beside && height > -DEPTH && height < GAP).then(|| normal * (GAP - height))
+    }
+
+    /// The nearest vertex downhill from the nearest seed.
+    fn walk(&self, point: Vec3, seeds: &[u32]) -> u32 {
+        let nearer = |best: (u32, f32), vertex: u32| {
+            let squared = point.distance_squared(self.position(vertex));
+            if squared < best.1 { (vertex, squared) } else { best }
+        };
+        let mut best = seeds.iter().fold((seeds[0], f32::INFINITY), |best, seed| nearer(best, *seed));
+        for _ in 0..STEPS {
+            let next = self.fan(best.0).iter().fold(best, |best, corners| nearer(best, corners[0]));
+            if next.0 == best.0 {
+                break;
+            }
+            best = next;
+        }
+        best.0
+    }
+
+    /// The closest point of the triangles around a vertex, and the interpolated unit normal there.
+    fn closest(&self, point: Vec3, vertex: u32) -> Option<(Vec3, Vec3)> {
+        let mut best = f32::INFINITY;
+        let mut found = None;
+        for [b, c] in self.fan(vertex) {
+            let corners = [vertex, *b, *c];
+            let [a, b, c] = corners.map(|corner| self.position(corner));
+            let shares = closest_on_triangle(point, a, b, c);
+            let foot = a * shares.x + b * shares.y + c * shares.z;
+            let squared = point.distance_squared(foot);
+            if squared < best {
+                best = squared;
+                found = Some((foot, shares, corners));
+            }
+        }
+        let (foot, shares, corners) = found?;
+        let [a, b, c] = corners.map(|corner| Vec3::from_array(self.normals[corner as usize]));
+        // Opposite normals: a body folded onto itself has no outside there.
+        Some((foot, (a * shares.x + b * shares.y + c * shares.z).try_normalize()?))
+    }
+}
+
+/// Barycentric coordinates of the point of triangle abc closest to `point`: by areas inside, else on the nearest edge.
+fn closest_on_triangle(point: Vec3, a: Vec3, b: Vec3, c: Vec3) -> Vec3 {
+    let (ab, ac, ap) = (b - a, c - a, point - a);
+    let normal = ab.cross(ac);
+    let area = normal.length_squared();
+    if area > 0.0 {
+        let (v, w) = (ap.cross(ac).dot(normal) / area, ab.cross(ap).dot(normal) / area);
+        if v >= 0.0 && w >= 0.0 && v + w <= 1.0 {
+            return Vec3::new(1.0 - v - w, v, w);
+        }
+    }
+    let along = |from: Vec3, way: Vec3| {
+        let squared = way.length_squared();
+        if squared > 0.0 { ((point - from).dot(way) / squared).clamp(0.0, 1.0) } else { 0.0 }
+    };
+    let (s, t, u) = (along(a, ab), along(a, ac), along(b, c - b));
+    let edges = [Vec3::new(1.0 - s, s, 0.0), Vec3::new(1.0 - t, 0.0, t), Vec3::new(0.0, 1.0 - u, u)];
+    let squared = |shares: &Vec3| point.distance_squared(a * shares.x + b * shares.y + c * shares.z);
+    let nearer = |best: Vec3, edge: Vec3| if squared(&edge) < squared(&best) { edge } else { best };
+    edges.into_iter().fold(edges[0], nearer)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn closest_points_of_a_triangle_are_inside_on_edges_and_at_corners() {
+        let (a, b, c) = (Vec3::ZERO, Vec3::X, Vec3::Y);
+        let on = |point: Vec3| {
+            let shares = closest_on_triangle(point, a, b, c);
+            a * shares.x + b * shares.y + c * shares.z
+        };
+        assert_eq!(on(Vec3::new(0.25, 0.25, 3.0)), Vec3::new(0.25, 0.25, 0.0));
+        assert_eq!(on(Vec3::new(0.5, -2.0, 1.0)), Vec3::new(0.5, 0.0, 0.0));
+        assert_eq!(on(Vec3::new(1.0, 1.0, -1.0)), Vec3::new(0.5, 0.5, 0.0));
+        assert_eq!(on(Vec3::new(3.0, -1.0, 0.0)), b);
+        assert_eq!(closest_on_triangle(Vec3::ONE, a, a, a), Vec3::X);
+    }
+}

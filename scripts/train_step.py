@@ -1,0 +1,142 @@
+"""One optimisation step (forward, backward, Adam) of `ctsn bench --train` against the same step in PyTorch with PyTorch Geometric.
+
+Python is needed for this comparison only:  pip install torch torch_geometric numpy
+    python scripts/train_step.py [--ctsn target/release/ctsn] [--vertices 4000 5000] [--rounds 5] [--threads 2]
+
+Both take the mesh, the sizes and the batch from the model file that `ctsn bench --write-model` leaves. Runs alternate, so that whatever
+else the machine does slows both; the ratio is the median over the rounds. PyTorch runs the batch both as one disjoint union of graphs
+and pose by pose, and the faster of the two counts.
+"""
+
+import argparse, json, os, re, statistics, struct, subprocess, tempfile, time
+
+import numpy as np
+import torch
+from torch import nn
+from torch_geometric.nn import TransformerConv
+
+BATCH = 8
+
+
+def tensors(path):
+    """A safetensors file: name -> array, and the model's JSON."""
+    with open(path, "rb") as file:
+        header = json.loads(file.read(struct.unpack("<Q", file.read(8))[0]))
+        start, kinds = file.tell(), {"F32": np.float32, "U32": np.uint32}
+        bytes_ = file.seek(0) or file.read()
+    meta = json.loads(header.pop("__metadata__")["ctsn"])
+    view = lambda t: np.frombuffer(bytes_, kinds[t["dtype"]], int(np.prod(t["shape"])), start + t["data_offsets"][0])
+    return {name: torch.tensor(view(t).reshape(t["shape"]).astype(np.int64 if t["dtype"] == "U32" else np.float32)) for name, t in header.items()}, meta
+
+
+def mlp(file, name):
+    """Linear layers `name.0`, `name.1`, … of the file's sizes."""
+    count = sum(key.startswith(f"{name}.") and key.endswith(".weight") for key in file)
+    shapes = [file[f"{name}.{i}.weight"].shape for i in range(count)]
+    return nn.ModuleList(nn.Linear(inputs, outputs) for outputs, inputs in shapes)
+
+
+class Network(nn.Module):
+    """network.md in PyTorch."""
+
+    def __init__(self, file, heads, edge_scale):
+        super().__init__()
+        parameter = lambda name: nn.Parameter(file[name].clone())
+        self.skin, self.skeleton, self.mesh = (parameter(name) for name in ["cloth.weights", "skeleton.basis", "mesh.basis"])
+        self.embedding, self.vertex = mlp(file, "embedding"), mlp(file, "vertex")
+        layers = [file[f"graph.{l}.query.weight"].shape for l in range(sum(key.endswith(".query.weight") for key in file))]
+        conv = lambda features, inputs: TransformerConv(inputs, features // heads, heads=heads, beta=True, edge_dim=6)
+        self.layers = nn.ModuleList(conv(*shape) for shape in layers)
+        self.norms = nn.ModuleList(nn.LayerNorm(features) for features, _ in layers)
+        self.rest, index = file["cloth.rest"], file["reference.index"]
+        self.body, self.body_skin = file["reference.rest"][index], file["reference.weights"][index]
+        self.mean, self.std, self.scale = file["reference.mean"], file["reference.std"], edge_scale
+        t = file["cloth.triangles"]
+        edges = torch.cat([t[:, pair] for pair in ([0, 1], [1, 2], [2, 0], [1, 0], [2, 1], [0, 2])])
+        self.edges = torch.unique(edges, dim=0).T.contiguous()
+
+    def lbs(self, weights, transforms, points):
+        """weights [n, J], transforms [b, J, 12], points [b or 1, n, 3] -> [b, n, 3]."""
+        b, joints, _ = transforms.shape
+        blended = (weights @ transforms.transpose(0, 1).reshape(joints, b * 12)).view(-1, b, 3, 4).transpose(0, 1)
+        return (blended[..., :3] @ points.unsqueeze(-1)).squeeze(-1) + blended[..., 3]
+
+    def forward(self, pose, transforms):
+        b, n = pose.shape[0], self.rest.shape[0]
+        p = pose
+        for i, layer in enumerate(self.embedding):
+            p = layer(p) if i + 1 == len(self.embedding) else torch.relu(layer(p))
+        coarse = self.rest + torch.einsum("bm,mnc->bnc", p, self.skeleton)
+        with torch.no_grad():
+            v = self.lbs(self.body_skin, transforms, self.body.unsqueeze(0))
+            h = ((v - self.mean) / self.std).view(b * n, 3)
+            offsets = (torch.arange(b) * n).view(1, b, 1)
+            edges = (self.edges.unsqueeze(1) + offsets).view(2, -1)
+            source, target = edges
+            both = torch.cat([v.reshape(-1, 3), self.rest.repeat(b, 1)], 1) / self.scale
+            features = both[source] - both[target]
+        for layer, norm in zip(self.layers, self.norms):
+            h = torch.relu(norm(layer(h, edges, features)))
+        for layer in self.vertex:
+            h = torch.relu(layer(h))
+        residual = torch.einsum("bnk,knc->bnc", h.view(b, n, -1), self.mesh)
+        fine = coarse.detach() + residual
+        return self.lbs(self.skin, transforms, coarse), self.lbs(self.skin, transforms, fine)
+
+
+def stepper(file, meta):
+    """A function that runs one step, `groups` forward and backward passes for the batch."""
+    network = Network(file, meta["heads"], meta["edge_scale"])
+    adam = torch.optim.Adam(network.parameters(), 1e-3)
+    joints, n = file["cloth.weights"].shape[1], file["cloth.rest"].shape[0]
+    pose, truth = torch.randn(BATCH, 12 * joints), file["cloth.rest"] + 0.02 * torch.randn(BATCH, n, 3)
+    transforms = torch.eye(3, 4).reshape(12) + 0.05 * torch.randn(BATCH, joints, 12)
+
+    def step(groups):
+        adam.zero_grad()
+        for part in torch.arange(BATCH).chunk(groups):
+            coarse, fine = network(pose[part], transforms[part])
+            distance = lambda x: (x - truth[part]).norm(dim=-1).mean()
+            ((distance(coarse) + distance(fine)) / groups).backward()
+        adam.step()
+
+    return step, network.edges.shape[1], n
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--ctsn", default="target/release/ctsn")
+    parser.add_argument("--vertices", type=int, nargs="+", default=[4000, 5000])
+    parser.add_argument("--rounds", type=int, default=5)
+    parser.add_argument("--threads", type=int, default=2)
+    arguments = parser.parse_args()
+    torch.set_num_threads(arguments.threads)
+    environment = {**os.environ, "RAYON_NUM_THREADS": str(arguments.threads)}
+    for vertices in arguments.vertices:
+        bench = [arguments.ctsn, "bench", "--vertices", str(vertices), "--runs", "1"]
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "model.safetensors")
+            subprocess.run([*bench, "--write-model", path], check=True)
+            step, edges, n = stepper(*tensors(path))
+        rounds = []
+        for groups in (1, BATCH):
+            step(groups)
+        for _ in range(arguments.rounds):
+            out = subprocess.run([*bench, "--train"], check=True, capture_output=True, text=True, env=environment).stdout
+            ours = float(re.search(r"training\s+([\d.]+) ms", out).group(1))
+            times = {}
+            for groups in (1, BATCH):
+                samples = []
+                for _ in range(5):
+                    start = time.perf_counter()
+                    step(groups)
+                    samples.append(1e3 * (time.perf_counter() - start))
+                times[groups] = statistics.median(samples)
+            rounds.append((ours, times[1], times[BATCH], min(times.values()) / ours, os.getloadavg()[0]))
+            print("n %d: ctsn %.1f ms, PyTorch as one %.1f ms, pose by pose %.1f ms, ratio %.2f (load %.1f)" % (n, *rounds[-1]), flush=True)
+        medians = [statistics.median(column) for column in zip(*rounds)]
+        print("n %d, %d edges, %d threads, torch %s: medians ctsn %.1f ms, PyTorch as one %.1f ms, pose by pose %.1f ms; ratio %.2f" % (n, edges, arguments.threads, torch.__version__, *medians[:4]), flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,122 @@
+// How far cloth vertices must move to lie outside the posed body. The closest body point is searched by walking over the body's
+// surface from a few seeds. Twin: crate/core/src/cpu/collide.rs
+
+struct Params {
+    vertices: u32,
+    // Seeds per vertex.
+    seeds: u32,
+    steps: u32,
+    gap: f32,
+    depth: f32,
+    steepest: f32,
+}
+
+@group(0) @binding(0) var<uniform> params: Params;
+// Posed body: positions and unit normals [b, 3].
+@group(0) @binding(1) var<storage, read> body: array<f32>;
+@group(0) @binding(2) var<storage, read> body_normals: array<f32>;
+// First triangle around each body vertex [b + 1], and the other two corners of each.
+@group(0) @binding(3) var<storage, read> offsets: array<u32>;
+@group(0) @binding(4) var<storage, read> fans: array<vec2<u32>>;
+// [seeds, n]
+@group(0) @binding(5) var<storage, read> seeds_of: array<u32>;
+// [n, 3]
+@group(0) @binding(6) var<storage, read> positions: array<f32>;
+@group(0) @binding(7) var<storage, read_write> push: array<f32>;
+
+fn position(vertex: u32) -> vec3<f32> {
+    return vec3(body[3u * vertex], body[3u * vertex + 1u], body[3u * vertex + 2u]);
+}
+
+fn normal(vertex: u32) -> vec3<f32> {
+    return vec3(body_normals[3u * vertex], body_normals[3u * vertex + 1u], body_normals[3u * vertex + 2u]);
+}
+
+fn squared(way: vec3<f32>) -> f32 {
+    return dot(way, way);
+}
+
+// The nearest vertex downhill from the nearest seed.
+fn walk(i: u32, point: vec3<f32>) -> u32 {
+    var best = seeds_of[i];
+    var least = squared(point - position(best));
+    for (var s = 1u; s < params.seeds; s++) {
+        let vertex = seeds_of[s * params.vertices + i];
+        let found = squared(point - position(vertex));
+        best = select(best, vertex, found < least);
+        least = min(least, found);
+    }
+    for (var step = 0u; step < params.steps; step++) {
+        let before = best;
+        for (var k = offsets[before]; k < offsets[before + 1u]; k++) {
+            let vertex = fans[k].x;
+            let found = squared(point - position(vertex));
+            best = select(best, vertex, found < least);
+            least = min(least, found);
+        }
+        if (best == before) {
+            break;
+        }
+    }
+    return best;
+}
+
+// Share of the way from a point along an edge to where it is closest.
+fn along(offset: vec3<f32>, way: vec3<f32>) -> f32 {
+    let length = squared(way);
+    return select(0.0, clamp(dot(offset, way) / length, 0.0, 1.0), length > 0.0);
+}
+
+// Barycentric coordinates of the point of triangle abc closest to the point: by areas inside, else on the nearest edge.
+fn closest(point: vec3<f32>, a: vec3<f32>, b: vec3<f32>, c: vec3<f32>) -> vec3<f32> {
+    let across = cross(b - a, c - a);
+    let area = squared(across);
+    if (area > 0.0) {
+        let v = dot(cross(point - a, c - a), across) / area;
+        let w = dot(cross(b - a, point - a), across) / area;
+        if (v >= 0.0 && w >= 0.0 && v + w <= 1.0) {
+            return vec3(1.0 - v - w, v, w);
+        }
+    }
+    let s = along(point - a, b - a);
+    let t = along(point - a, c - a);
+    let u = along(point - b, c - b);
+    let on = vec3(squared(point - mix(a, b, s)), squared(point - mix(a, c, t)), squared(point - mix(b, c, u)));
+    let ab_or_ac = select(vec3(1.0 - s, s, 0.0), vec3(1.0 - t, 0.0, t), on.y < on.x);
+    return select(ab_or_ac, vec3(0.0, 1.0 - u, u), on.z < min(on.x, on.y));
+}
+
+@compute @workgroup_size(64)
+fn collide(@builtin(global_invocation_id) id: vec3<u32>) {
+    let i = id.x;
+    if (i >= params.vertices) {
+        return;
+    }
+    let point = vec3(positions[3u * i], positions[3u * i + 1u], positions[3u * i + 2u]);
+    let vertex = walk(i, point);
+    var least = 3.4e38;
+    var foot = vec3(0.0);
+    var steep = vec3(0.0);
+    for (var k = offsets[vertex]; k < offsets[vertex + 1u]; k++) {
+        let corners = vec3(vertex, fans[k]);
+        let a = position(corners.x);
+        let b = position(corners.y);
+        let c = position(corners.z);
+        let shares = closest(point, a, b, c);
+        let on = a * shares.x + b * shares.y + c * shares.z;
+        if (squared(point - on) < least) {
+            least = squared(point - on);
+            foot = on;
+            steep = normal(corners.x) * shares.x + normal(corners.y) * shares.y + normal(corners.z) * shares.z;
+        }
+    }
+    let length = sqrt(squared(steep));
+    let up = steep / max(length, 1e-30);
+    let height = dot(point - foot, up);
+    let beside = least > params.gap * params.gap && abs(height) < params.steepest * sqrt(least);
+    let moved = length > 1e-3 && !beside && height > -params.depth && height < params.gap;
+    let by = select(vec3(0.0), up * (params.gap - height), moved);
+    push[3u * i] = by.x;
+    push[3u * i + 1u] = by.y;
+    push[3u * i + 2u] = by.z;
+}
