@@ -107,7 +107,7 @@ test('the cloth is computed elsewhere at a click, and the page says where and wh
   const { page, complaints } = await site.visit();
   const [clip] = Object.keys(await ask(page, (demo) => demo.clips, null)) as [string];
   const onCpu = await ask(page, (demo, at) => demo.show(at, 12), clip);
-  expect(await page.textContent('#backend')).toContain('processor');
+  expect(await page.textContent('#backend')).toBe('Processor');
   await page.getByLabel('WebGPU').check({ force: true });
   await expect.poll(() => page.textContent('#backend'), patience).toMatch(/^WebGPU, ./);
   expect(await page.textContent('#reason')).toContain('a frame late');

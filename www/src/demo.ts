@@ -108,7 +108,7 @@ export class RunningDemo {
     this.meter.reset();
     this.#changed = true;
     const figures = measured ? ` Measured: ${measured.webgpu.toFixed(1)} ms, the processor ${measured.cpu.toFixed(1)} ms.` : '';
-    if (backend === 'cpu') this.#panel.showBackend('processor', fallback ?? '');
+    if (backend === 'cpu') this.#panel.showBackend('Processor', fallback ? `Not WebGPU: ${fallback}.` : '');
     else this.#panel.showBackend(`WebGPU, ${adapter}`, `Read back for WebGL: the cloth shows a frame late.${figures}`);
   }
 

@@ -89,7 +89,7 @@ export class Panel {
   /** Tells where the cloth is computed, and why there. */
   showBackend(where: string, why: string): void {
     element('backend').textContent = where;
-    element('reason').textContent = why;
+    element('reason').textContent = why && `. ${why}`;
   }
 
   /** Chooses a clip. */

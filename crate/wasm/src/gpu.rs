@@ -20,8 +20,7 @@ impl Gpu {
     /// The device that `navigator.gpu` of this very moment hands out, lent: wgpu reads that property here and never again.
     #[wasm_bindgen(unchecked_return_type = "Promise<Gpu>")]
     pub fn adopt() -> Promise {
-        let instance =
-            ctsn_gpu::wgpu::Instance::new(ctsn_gpu::wgpu::InstanceDescriptor::new_without_display_handle());
+        let instance = ctsn_gpu::wgpu::Instance::new(ctsn_gpu::wgpu::InstanceDescriptor::new_without_display_handle());
         promise(async move { ctsn_gpu::Gpu::from_instance(&instance).await.map(Self) })
     }
 }
