@@ -123,6 +123,7 @@ pub fn model(rng: &mut Rng, shape: Shape) -> HostModel {
         vertex: vec![linear(rng, features, 11), linear(rng, 11, basis)],
         mesh: numbers(rng, n * 3 * basis, 0.1),
         surface: Some(Surface { uv: vec![0.0; 2 * drawn.len()], vertex: drawn, triangles: Vec::new() }),
+        body: None,
         training: None,
     }
 }
