@@ -1,5 +1,5 @@
 // npm run bench: milliseconds of one prediction at a size that stands for a real garment, natively and in Chromium.
-import { chromium, flags } from './browser.mjs';
+import { chromium, environment, flags } from './browser.mjs';
 import { buildLibrary } from './library.mjs';
 import { at, main, need, say } from './step.mjs';
 import { ensureToolchain } from './toolchain.mjs';
@@ -47,7 +47,7 @@ async function inChromium(modelFile) {
     optimizeDeps: { noDiscovery: true },
   });
   await server.listen();
-  const browser = await playwright.launch({ executablePath: chromium(), args: flags() });
+  const browser = await playwright.launch({ executablePath: chromium(), args: flags(), env: environment() });
   try {
     const page = await browser.newPage();
     const isolated = { 'Cross-Origin-Opener-Policy': 'same-origin', 'Cross-Origin-Embedder-Policy': 'require-corp' };

@@ -1,5 +1,5 @@
 // Chromium and its driver: where they are, and the flags under which they draw WebGL and WebGPU without a screen.
-import { existsSync, readFileSync } from 'node:fs';
+import { existsSync, readFileSync, realpathSync } from 'node:fs';
 import path from 'node:path';
 import { at, Stop } from './step.mjs';
 
@@ -24,4 +24,14 @@ export const chromedriver = () => find('CHROMEDRIVER');
 /** The command line flags, read from where wasm-bindgen's test runner takes them too. */
 export function flags() {
   return JSON.parse(readFileSync(at('tests', 'webdriver.json'), 'utf8'))['goog:chromeOptions'].args;
+}
+
+/**
+ * The environment to start the browser in: WebGL and WebGPU share one Vulkan driver there, and it must be Chromium's own
+ * SwiftShader; Mesa's, where it is installed, gives no WebGL.
+ */
+export function environment() {
+  const folders = [path.dirname(realpathSync(chromium())), '/usr/lib/chromium', '/usr/lib64/chromium'];
+  const driver = folders.map((folder) => path.join(folder, 'vk_swiftshader_icd.json')).find((file) => existsSync(file));
+  return { ...process.env, ...(driver && { VK_ICD_FILENAMES: driver, VK_DRIVER_FILES: driver }) };
 }

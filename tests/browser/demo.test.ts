@@ -102,3 +102,25 @@ test('a failure is told on the page: no model, a broken model, no such clip', as
     expect(complaints.length).toBeGreaterThan(0);
     }
 });
+
+test('the cloth is computed elsewhere at a click, and the page says where and why', async () => {
+  const { page, complaints } = await site.visit();
+  const [clip] = Object.keys(await ask(page, (demo) => demo.clips, null)) as [string];
+  const onCpu = await ask(page, (demo, at) => demo.show(at, 12), clip);
+  expect(await page.textContent('#backend')).toBe('Processor');
+  await page.getByLabel('WebGPU').check({ force: true });
+  await expect.poll(() => page.textContent('#backend'), patience).toMatch(/^WebGPU, ./);
+  expect(await page.textContent('#reason')).toContain('a frame late');
+  const onGpu = await ask(page, (demo, at) => demo.show(at, 12), clip);
+  expect(await ask(page, (demo) => demo.backend, null)).toBe('webgpu');
+  expect(difference(onGpu.positions, onCpu.positions)).toBeLessThanOrEqual(tolerances.positions.most);
+  await page.screenshot({ path: `${out}/webgpu.png` });
+  await page.getByLabel('Faster').check({ force: true });
+  await expect.poll(() => page.textContent('#reason'), patience).toMatch(/the CPU is faster here: [\d.]+ ms a prediction, the GPU [\d.]+ ms|Measured: [\d.]+ ms/);
+  await page.screenshot({ path: `${out}/auto.png` });
+  await site.leave();
+  const none = await site.visit('?backend=webgpu', (bare) => bare.addInitScript("Object.defineProperty(navigator, 'gpu', { value: undefined })"));
+  await expect.poll(() => none.page.textContent('#reason'), patience).toContain('no WebGPU');
+  expect(await ask(none.page, (demo) => demo.backend, null)).toBe('cpu');
+  expect([...complaints, ...none.complaints]).toEqual([]);
+});

@@ -3,7 +3,7 @@ import { mkdirSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 import { chromium as playwright, type Browser, type Page } from 'playwright-core';
 import { preview, type PreviewServer } from 'vite';
-import { chromium, flags } from '../../scripts/browser.mjs';
+import { chromium, environment, flags } from '../../scripts/browser.mjs';
 import type { Demo } from '../../www/src/hook.js';
 
 const root = fileURLToPath(new URL('../../', import.meta.url));
@@ -29,7 +29,7 @@ export class Site {
   /** Serves www/dist and starts the browser; throws when there is none. */
   static async open(): Promise<Site> {
     mkdirSync(out, { recursive: true });
-    const browser = await playwright.launch({ executablePath: chromium(), args: flags() });
+    const browser = await playwright.launch({ executablePath: chromium(), args: flags(), env: environment() });
     return new Site(await preview({ root: `${root}www`, preview: { port: 0 }, logLevel: 'silent' }), browser);
   }
 
@@ -64,7 +64,7 @@ export class Site {
 }
 
 /** Runs `work` on the page's handle. */
-export function ask<Argument, Answer>(page: Page, work: (demo: Demo, argument: Argument) => Answer, argument: Argument): Promise<Answer> {
+export function ask<Argument, Answer>(page: Page, work: (demo: Demo, argument: Argument) => Answer, argument: Argument): Promise<Awaited<Answer>> {
   // Playwright sends the text of a function; both travel as one expression.
   return page.evaluate(`(${work.toString()})(window.ctsnDemo, ${JSON.stringify(argument ?? null)})`);
 }

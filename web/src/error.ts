@@ -17,6 +17,8 @@ export type CtsnErrorCode =
   | 'not_finite'
   /** The model was used after `dispose()`. */
   | 'disposed'
+  /** No GPU to compute on, or no buffers on it: only where buffers are asked for, as the CPU answers everything else. */
+  | 'no_device'
   | (string & {});
 
 /** Every error this package throws on purpose. */

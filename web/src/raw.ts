@@ -2,12 +2,12 @@
  * The wall between this package and the generated glue: the only file that imports it.
  * Its twin on the other side is crate/wasm/src/lib.rs.
  */
-import initialiseGlue, { Predictor, Streams } from './glue/ctsn.js';
+import initialiseGlue, { Gpu, GpuModel, Predictor, Streams, type GpuPredictor } from './glue/ctsn.js';
 import { download } from './download.js';
 import { CtsnError } from './error.js';
 
-export { Streams };
-export type { Predictor };
+export { Gpu, GpuModel, Streams };
+export type { GpuPredictor, Predictor };
 
 /** Where the WebAssembly module comes from, if not from beside this file. */
 export type WasmSource = string | URL | ArrayBuffer | Uint8Array<ArrayBuffer> | WebAssembly.Module;

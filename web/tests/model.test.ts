@@ -1,7 +1,7 @@
-import { expect, test } from 'vitest';
-import { loadModel } from 'ctsn';
+import { expect, expectTypeOf, test } from 'vitest';
+import { loadModel, type ClothBuffers, type Frame } from 'ctsn';
 import { difference } from '../../tests/browser/safetensors.js';
-import { bytesOf, loadGolden } from './golden.js';
+import { bytesOf, loadGolden, readGolden } from './golden.js';
 
 test.each(['tiny', 'small', 'small_f16', 'isolated'])('golden model %s, through the public API', async (name) => {
   const { model, poses, positions, tolerance } = await loadGolden(name);
@@ -70,4 +70,31 @@ test('dispose() gives the memory back', async () => {
   for (let round = 0; round < 50; round++) (await loadModel(bytes)).dispose();
   // A memory that had grown would have detached its old buffer.
   expect(buffer.byteLength).toBeGreaterThan(0);
+});
+
+test.each(['webgpu', 'auto'] as const)('where there is no WebGPU, as here, %s means the CPU, and the reason is told', async (backend) => {
+  const { poses, positions, tolerance } = readGolden('small');
+  const model = await loadModel(bytesOf('small'), { backend });
+  expect(model.backend).toBe('cpu');
+  expect(model.fallback).toMatch(/no WebGPU/);
+  for (const output of ['gpu', 'arrays'] as const) {
+    const frame = (output === 'gpu' ? model.predictCloth(poses[0]!, { output }) : await model.predictCloth(poses[0]!, { output })) as Frame;
+    expect(frame.output).toBe('arrays');
+    expect(difference(frame.positions, positions[0]!)).toBeLessThanOrEqual(tolerance);
+  }
+  await expect(model.createBuffers()).rejects.toMatchObject({ code: 'no_device' });
+  await expect(model.setBackend('gpu' as 'cpu')).rejects.toMatchObject({ code: 'argument' });
+  model.dispose();
+  await expect(model.setBackend('cpu')).rejects.toMatchObject({ code: 'disposed' });
+});
+
+test('the types say what comes at once and what may not', async () => {
+  const [cpu, any] = [await loadModel(bytesOf('tiny')), await loadModel(bytesOf('tiny'), { backend: 'auto' })];
+  const pose = readGolden('tiny').poses[0]!;
+  expectTypeOf(cpu.predictCloth(pose)).toEqualTypeOf<Frame>();
+  expectTypeOf(any.predictCloth(pose)).toEqualTypeOf<Frame | Promise<Frame>>();
+  expectTypeOf(any.predictCloth(pose, { output: 'gpu' })).toEqualTypeOf<Frame | ClothBuffers>();
+  expectTypeOf(any.predictCloth(pose, { backend: 'cpu' })).toEqualTypeOf<Frame>();
+  expect(any.predictCloth(pose, { backend: 'cpu' }).positions).toEqual(cpu.predictCloth(pose).positions);
+  for (const model of [cpu, any]) model.dispose();
 });

@@ -1,5 +1,5 @@
 import { Material, MeshBasicMaterial, Vector3, type BufferAttribute } from 'three';
-import type { ClothModel, StreamChoice } from 'ctsn';
+import type { BackendChoice, ClothModel, StreamChoice } from 'ctsn';
 import { Cloth } from 'ctsn/three';
 import { RATE, type Character } from './character.js';
 import { createFabric } from './fabric.js';
@@ -19,6 +19,8 @@ export class RunningDemo {
   readonly #cloth: Cloth;
   readonly #fabric: Material;
   #changed = true;
+  /** A prediction came back from the GPU and is not drawn yet. */
+  #arrived = false;
   readonly #mesh = new MeshBasicMaterial({ wireframe: true, color: '#2d4f6b' });
 
   constructor(stage: Stage, character: Character, model: ClothModel, panel: Panel) {
@@ -39,6 +41,9 @@ export class RunningDemo {
       this.meter.reset();
       if (panel.wishes.clip !== character.clip) character.show(panel.wishes.clip, 0);
     };
+    panel.onBackend = (choice) => void this.compute(choice);
+    model.addEventListener('backend', () => this.#tell());
+    this.#tell();
   }
 
   /** Runs until the page closes. A page at rest draws nothing. */
@@ -51,6 +56,7 @@ export class RunningDemo {
       const { playing } = this.#panel.wishes;
       if (playing) this.#character.advance(seconds);
       if (this.#stage.look() || playing || this.#changed) this.draw();
+      else if (this.#arrived) this.#render();
     });
   }
 
@@ -58,13 +64,52 @@ export class RunningDemo {
   draw(): void {
     const { wishes } = this.#panel;
     this.#changed = false;
-    this.meter.time(() => this.#cloth.update(wishes));
+    this.#predict();
     this.predictions++;
     this.#cloth.material = wishes.wireframe ? this.#mesh : this.#fabric;
     this.#stage.follow(this.#cloth.bones[this.#cloth.model.rootIndex]!);
-    this.#stage.render();
+    this.#render();
     const { time, duration } = this.#character;
     this.#panel.show({ milliseconds: this.meter.median, time, duration });
+  }
+
+  /** Computes the cloth elsewhere from now on. */
+  async compute(choice: BackendChoice): Promise<void> {
+    this.#panel.showBackend('trying…', '');
+    await this.#cloth.model.setBackend(choice);
+    this.#tell();
+  }
+
+  /** Settles when the frame asked for last is there. */
+  async settled(): Promise<void> {
+    await this.#cloth.settled();
+    this.#render();
+  }
+
+  #render(): void {
+    this.#arrived = false;
+    this.#stage.render();
+  }
+
+  /** The time of a prediction on the GPU is that until it is back. */
+  #predict(): void {
+    const start = performance.now();
+    const late = this.#cloth.update(this.#panel.wishes).backend === 'webgpu';
+    const end = () => this.meter.add(performance.now() - start);
+    if (!late) return end();
+    void this.#cloth.settled().then(() => {
+      end();
+      this.#arrived = true;
+    });
+  }
+
+  #tell(): void {
+    const { backend, adapter, fallback, measured } = this.#cloth.model;
+    this.meter.reset();
+    this.#changed = true;
+    const figures = measured ? ` Measured: ${measured.webgpu.toFixed(1)} ms, the processor ${measured.cpu.toFixed(1)} ms.` : '';
+    if (backend === 'cpu') this.#panel.showBackend('Processor', fallback ? `Not WebGPU: ${fallback}.` : '');
+    else this.#panel.showBackend(`WebGPU, ${adapter}`, `Read back for WebGL: the cloth shows a frame late.${figures}`);
   }
 
   /** Freezes the page at a frame of a clip. */

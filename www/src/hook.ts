@@ -1,4 +1,4 @@
-import type { StreamChoice } from 'ctsn';
+import type { Backend, StreamChoice } from 'ctsn';
 
 /** One frame as it stands on the page: what a test needs to compute it elsewhere, and what came out here. */
 export interface Capture {
@@ -19,7 +19,7 @@ export interface Capture {
 
 /**
  * `window.ctsnDemo`: the page's handle for tests and for the curious. `?pose=CLIP:FRAME` in the address freezes the page at a
- * frame (30 a second); `?streams=both|skeleton|none` chooses the source of the cloth.
+ * frame (30 a second); `?streams=both|skeleton|none` chooses the source of the cloth, `?backend=cpu|webgpu|auto` where it is computed.
  */
 export interface Demo {
   /** What went wrong, if anything did. */
@@ -32,7 +32,10 @@ export interface Demo {
   predictions: number;
   milliseconds: number;
   /** Freezes the page at a frame, predicts and draws it, and tells what came out. */
-  show(clip: string, frame: number, streams?: StreamChoice): Capture;
+  show(clip: string, frame: number, streams?: StreamChoice): Promise<Capture>;
+  /** Where the cloth is predicted, and why not on the GPU. */
+  backend: Backend;
+  fallback: string | undefined;
 }
 
 declare global {

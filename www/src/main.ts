@@ -1,4 +1,4 @@
-import { loadModel, type Progress, type StreamChoice } from 'ctsn';
+import { loadModel, type BackendChoice, type ClothModel, type Progress, type StreamChoice } from 'ctsn';
 import { FileLoader } from 'three';
 import { Character, RATE } from './character.js';
 import { RunningDemo } from './demo.js';
@@ -23,14 +23,14 @@ function showProgress(file: string, progress: Progress): void {
   element('progress-text').textContent = `Loading the character and its tunic: ${formatBytes(loaded)}`;
 }
 
-async function load(): Promise<[Character, Awaited<ReturnType<typeof loadModel>>, number]> {
+async function load(): Promise<[Character, ClothModel, number]> {
   const body = new FileLoader().setResponseType('arraybuffer');
   const base = import.meta.env.BASE_URL;
   const [glb, model] = await Promise.all([
     body.loadAsync(`${base}mannequin.glb`, ({ loaded, total, lengthComputable }) => {
       showProgress('character', lengthComputable ? { loaded, total } : { loaded });
     }),
-    loadModel(`${base}tunic.safetensors`, { onProgress: (progress) => showProgress('tunic', progress) }),
+    loadModel(`${base}tunic.safetensors`, { backend: 'cpu' as BackendChoice, onProgress: (progress) => showProgress('tunic', progress) }),
   ]);
   return [await Character.parse(glb as ArrayBuffer), model, received.get('tunic')?.loaded ?? 0];
 }
@@ -48,17 +48,22 @@ async function start(): Promise<void> {
   if (frozen) demo.freeze(frozen.clip, frozen.frame, streams);
   else panel.choose(streams);
   demo.run();
+  const backend = address.searchParams.get('backend');
+  if (backend) panel.compute(backend as BackendChoice);
 
   const clips = Object.fromEntries(character.clips.map((clip) => [clip, Math.floor(character.length(clip) * RATE)]));
   Object.defineProperties(hook, {
     predictions: { get: () => demo.predictions },
     milliseconds: { get: () => demo.meter.median },
+    backend: { get: () => model.backend },
+    fallback: { get: () => model.fallback },
   });
   Object.assign(hook, {
     clips,
     ready: true,
-    show(clip: string, frame: number, choice: StreamChoice = 'both') {
+    async show(clip: string, frame: number, choice: StreamChoice = 'both') {
       demo.freeze(clip, frame, choice);
+      await demo.settled();
       return demo.capture();
     },
   } satisfies Partial<Demo>);

@@ -4,11 +4,9 @@ export class Meter {
   readonly #sorted = new Float64Array(90);
   #count = 0;
 
-  /** Runs `work` and records how long it took. */
-  time(work: () => void): void {
-    const start = performance.now();
-    work();
-    this.#recent[this.#count++ % this.#recent.length] = performance.now() - start;
+  /** Records a duration in milliseconds. */
+  add(milliseconds: number): void {
+    this.#recent[this.#count++ % this.#recent.length] = milliseconds;
   }
 
   /** How many durations were recorded. */

@@ -1,4 +1,4 @@
-import type { StreamChoice } from 'ctsn';
+import type { BackendChoice, StreamChoice } from 'ctsn';
 
 /** What the controls ask for. */
 export interface Wishes {
@@ -35,6 +35,9 @@ export class Panel {
   onScrub: (seconds: number) => void = () => {};
   /** Called when anything else is chosen. */
   onChange: () => void = () => {};
+
+  /** Called when another place to compute is chosen. */
+  onBackend: (choice: BackendChoice) => void = () => {};
 
   readonly #play = element<HTMLButtonElement>('play');
   readonly #time = element<HTMLInputElement>('time');
@@ -75,6 +78,20 @@ export class Panel {
     this.onChange();
   }
 
+  /** Chooses where the cloth is computed. */
+  compute(choice: BackendChoice): void {
+    const radio = document.querySelector<HTMLInputElement>(`input[name=backend][value=${CSS.escape(choice)}]`);
+    if (!radio) throw new Error(`?backend=${choice}: cpu, webgpu or auto wanted`);
+    radio.checked = true;
+    this.onBackend(choice);
+  }
+
+  /** Tells where the cloth is computed, and why there. */
+  showBackend(where: string, why: string): void {
+    element('backend').textContent = where;
+    element('reason').textContent = why && `. ${why}`;
+  }
+
   /** Chooses a clip. */
   select(clip: string): void {
     this.wishes.clip = this.#clip.value = clip;
@@ -90,6 +107,9 @@ export class Panel {
     });
     for (const radio of document.querySelectorAll<HTMLInputElement>('input[name=streams]')) {
       radio.addEventListener('change', () => this.choose(radio.value as StreamChoice));
+    }
+    for (const radio of document.querySelectorAll<HTMLInputElement>('input[name=backend]')) {
+      radio.addEventListener('change', () => this.onBackend(radio.value as BackendChoice));
     }
     const wireframe = element<HTMLInputElement>('wireframe');
     wireframe.addEventListener('change', () => {

@@ -6,11 +6,12 @@ use crate::model::{HostModel, Sizes, Surface};
 use crate::network::{Activations, Streams, frame};
 use crate::pose::{Rig, Transform};
 use crate::{Error, Result};
+use std::sync::Arc;
 
 /// A model on the CPU device with every buffer it needs.
 pub struct Predictor {
     device: Cpu,
-    model: HostModel,
+    model: Arc<HostModel>,
     activations: Activations<Vec<f32>>,
 }
 
@@ -24,7 +25,12 @@ impl Predictor {
     pub fn from_model(model: HostModel, level: Level) -> Self {
         let mut device = Cpu::with_level(level);
         let activations = Activations::new(&model, |_, length| device.buffer(&vec![0.0; length]));
-        Self { device, model, activations }
+        Self { device, model: Arc::new(model), activations }
+    }
+
+    /// The model, to be put on another device too.
+    pub fn model(&self) -> &Arc<HostModel> {
+        &self.model
     }
 
     /// Sizes of the network.

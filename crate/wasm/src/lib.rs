@@ -1,7 +1,9 @@
-//! The browser's door: hands `ctsn_core::Predictor` to JavaScript. No arithmetic here; its twin on the other side
-//! of the wall is `web/src/raw.ts`, the one file that imports what wasm-bindgen makes of this.
+//! The browser's door: hands `ctsn_core::Predictor`, and in `gpu.rs` that of `ctsn_gpu`, to JavaScript. No arithmetic here;
+//! its twin on the other side of the wall is `web/src/raw.ts`, the one file that imports what wasm-bindgen makes of this.
 
-use ctsn_core::Error;
+mod gpu;
+
+use ctsn_gpu::Error;
 use wasm_bindgen::prelude::*;
 
 /// Which of the network's streams act.
@@ -26,7 +28,7 @@ impl From<Streams> for ctsn_core::Streams {
     }
 }
 
-/// A JavaScript `Error` whose `name` is the core's stable code.
+/// A JavaScript `Error` whose `name` is the stable code of the core or of the GPU device.
 fn to_js(error: &Error) -> js_sys::Error {
     let js = js_sys::Error::new(&error.to_string());
     js.set_name(error.kind());
@@ -55,7 +57,7 @@ impl Predictor {
     /// A JavaScript `Error` whose `name` is the code of what is wrong with the file.
     #[wasm_bindgen(constructor)]
     pub fn new(bytes: Vec<u8>) -> Result<Predictor, js_sys::Error> {
-        let inner = ctsn_core::Predictor::new(&bytes).map_err(|error| to_js(&error))?;
+        let inner = ctsn_core::Predictor::new(&bytes).map_err(|error| to_js(&error.into()))?;
         let pose = vec![0.0; inner.joints().len() * 16];
         Ok(Self { inner, pose, failure: None })
     }
@@ -118,7 +120,7 @@ impl Predictor {
     /// Predicts from the pose at [`Self::pose_address`]; false if that failed, and then [`Self::take_failure`] says why.
     /// Not a `Result`: wasm-bindgen returns one as a fresh array, and a frame allocates nothing.
     pub fn predict(&mut self, streams: Streams) -> bool {
-        self.failure = self.inner.predict(&self.pose, streams.into()).err();
+        self.failure = self.inner.predict(&self.pose, streams.into()).err().map(Error::from);
         self.failure.is_none()
     }
 

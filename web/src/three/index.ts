@@ -1,3 +1,4 @@
-export { Cloth } from './cloth.js';
+export { Cloth, type ClothOptions } from './cloth.js';
+export { deviceOf } from './adopt.js';
 export { ClothLoader } from './loader.js';
 export type { Character } from './bones.js';

@@ -1,4 +1,5 @@
 import { Loader } from 'three';
+import type { BackendChoice } from '../backend.js';
 import type { Progress } from '../download.js';
 import { loadModel } from '../load.js';
 import type { ClothModel } from '../model.js';
@@ -7,10 +8,19 @@ import type { WasmSource } from '../raw.js';
 /** `loadModel` as a three.js loader: path, loading manager, request headers and credentials apply. */
 export class ClothLoader extends Loader<ClothModel> {
   #wasm: WasmSource | undefined;
+  #backend: BackendChoice = 'cpu';
+  #device: GPUDevice | undefined;
 
   /** Where the WebAssembly module comes from, if not from beside the package's files. */
   setWasm(source: WasmSource): this {
     this.#wasm = source;
+    return this;
+  }
+
+  /** Where models compute, as for `loadModel`. */
+  setBackend(choice: BackendChoice, device?: GPUDevice): this {
+    this.#backend = choice;
+    this.#device = device;
     return this;
   }
 
@@ -22,8 +32,10 @@ export class ClothLoader extends Loader<ClothModel> {
   ): void {
     const address = this.manager.resolveURL(this.path + url);
     const request: RequestInit = { headers: this.requestHeader, credentials: this.withCredentials ? 'include' : 'same-origin' };
+    const [backend, device, wasm] = [this.#backend, this.#device, this.#wasm];
+    const options = { backend, device, request, wasm, onProgress: (progress: Progress) => onProgress?.(toEvent(progress)) };
     this.manager.itemStart(address);
-    loadModel(address, { request, wasm: this.#wasm, onProgress: (progress) => onProgress?.(toEvent(progress)) }).then(
+    loadModel(address, options).then(
       (model) => {
         onLoad(model);
         this.manager.itemEnd(address);

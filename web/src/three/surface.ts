@@ -1,5 +1,6 @@
 import { Box3, BufferAttribute, BufferGeometry, DynamicDrawUsage, Sphere } from 'three';
 import type { ClothModel, Frame } from '../model.js';
+import { boundPositions } from './bounds.js';
 
 /** The drawn surface of a model, empty until `drawFrame` fills it; its bounds are `drawFrame`'s work too. */
 export function createGeometry({ surface, triangles, vertexCount }: ClothModel): BufferGeometry {
@@ -22,8 +23,7 @@ export function drawFrame(geometry: BufferGeometry, { positions, normals }: Fram
   gather(normals, vertex, normal.array as Float32Array);
   position.needsUpdate = true;
   normal.needsUpdate = true;
-  bound(positions, geometry.boundingBox!);
-  geometry.boundingBox!.getBoundingSphere(geometry.boundingSphere!);
+  boundPositions(positions, geometry);
 }
 
 /** from [3·n] -> to [3·d]. */
@@ -37,21 +37,5 @@ function gather(from: Float32Array, vertex: Uint32Array | undefined, to: Float32
     to[at++] = from[source]!;
     to[at++] = from[source + 1]!;
     to[at++] = from[source + 2]!;
-  }
-}
-
-function bound(positions: Float32Array, { min, max }: Box3): void {
-  min.setScalar(Infinity);
-  max.setScalar(-Infinity);
-  for (let at = 0; at < positions.length; at += 3) {
-    const x = positions[at]!;
-    const y = positions[at + 1]!;
-    const z = positions[at + 2]!;
-    if (x < min.x) min.x = x;
-    if (y < min.y) min.y = y;
-    if (z < min.z) min.z = z;
-    if (x > max.x) max.x = x;
-    if (y > max.y) max.y = y;
-    if (z > max.z) max.z = z;
   }
 }

@@ -1,0 +1,85 @@
+//! The GPU device's part of the door. What takes time is a promise that borrows nothing, so that JavaScript may call and
+//! free meanwhile.
+
+use crate::{Predictor, Streams, to_js};
+use js_sys::futures::future_to_promise;
+use js_sys::{Array, Float32Array, Promise};
+use wasm_bindgen::prelude::*;
+
+/// The promise of what `work` comes to; its rejection is a JavaScript `Error` whose `name` is a stable code.
+fn promise<T: Into<JsValue>>(work: impl Future<Output = ctsn_gpu::Result<T>> + 'static) -> Promise {
+    future_to_promise(async move { work.await.map(Into::into).map_err(|error| to_js(&error).into()) })
+}
+
+/// A device of the page, with the pipelines compiled on it.
+#[wasm_bindgen]
+pub struct Gpu(ctsn_gpu::Gpu);
+
+#[wasm_bindgen]
+impl Gpu {
+    /// The device that `navigator.gpu` of this very moment hands out, lent: wgpu reads that property here and never again.
+    #[wasm_bindgen(unchecked_return_type = "Promise<Gpu>")]
+    pub fn adopt() -> Promise {
+        let instance = ctsn_gpu::wgpu::Instance::new(ctsn_gpu::wgpu::InstanceDescriptor::new_without_display_handle());
+        promise(async move { ctsn_gpu::Gpu::from_instance(&instance).await.map(Self) })
+    }
+}
+
+/// A model's weights on a device, shared by its predictors.
+#[wasm_bindgen]
+pub struct GpuModel(ctsn_gpu::Model);
+
+#[wasm_bindgen]
+impl GpuModel {
+    /// Uploads the weights of `predictor`'s model.
+    #[wasm_bindgen(unchecked_return_type = "Promise<GpuModel>")]
+    pub fn load(gpu: &Gpu, predictor: &Predictor) -> Promise {
+        let (gpu, model) = (gpu.0.clone(), predictor.inner.model().clone());
+        promise(async move { ctsn_gpu::Model::new(&gpu, &model).await.map(Self) })
+    }
+
+    /// Room for one cloth, warmed up.
+    #[wasm_bindgen(unchecked_return_type = "Promise<GpuPredictor>")]
+    pub fn predictor(&self) -> Promise {
+        let model = self.0.clone();
+        promise(async move { ctsn_gpu::Predictor::new(&model).await.map(GpuPredictor) })
+    }
+}
+
+/// One cloth on a device. Freeing it destroys its buffers.
+#[wasm_bindgen]
+pub struct GpuPredictor(ctsn_gpu::Predictor);
+
+#[wasm_bindgen]
+impl GpuPredictor {
+    /// Submits the prediction for the pose at `cpu.pose_address()`, where `cpu` is the same model's; false if that failed,
+    /// and then `cpu.take_failure()` says why.
+    pub fn predict(&mut self, cpu: &mut Predictor, streams: Streams) -> bool {
+        cpu.failure = self.0.predict(&cpu.pose, streams.into()).err();
+        cpu.failure.is_none()
+    }
+
+    /// The last prediction, read back: positions and normals, each [3·n].
+    #[wasm_bindgen(unchecked_return_type = "Promise<[Float32Array, Float32Array]>")]
+    pub fn read(&self) -> Promise {
+        let read = self.0.read();
+        promise(async move {
+            let prediction = read.await?;
+            let arrays = [prediction.positions, prediction.normals].map(|values| Float32Array::from(values.as_slice()));
+            Ok(arrays.into_iter().collect::<Array>())
+        })
+    }
+
+    /// Predicted positions by buffer: of the cloth vertices [3·n] and of the drawn ones [3·d], world, metres, tightly packed,
+    /// fit to be vertex or storage buffers; then their unit normals likewise.
+    #[wasm_bindgen(unchecked_return_type = "[GPUBuffer, GPUBuffer, GPUBuffer, GPUBuffer]")]
+    pub fn buffers(&self) -> Array {
+        let buffers = [self.0.positions(), self.0.drawn_positions(), self.0.normals(), self.0.drawn_normals()];
+        buffers.into_iter().map(handle).collect()
+    }
+}
+
+/// The browser's own object behind a buffer.
+fn handle(buffer: &ctsn_gpu::wgpu::Buffer) -> JsValue {
+    buffer.as_webgpu().map(JsValue::from).unwrap_or_default()
+}

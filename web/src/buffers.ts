@@ -1,0 +1,59 @@
+import { fromCore, type GpuPredictor, type Predictor, type Streams } from './raw.js';
+
+/**
+ * One cloth on the GPU: buffers that hold its last prediction, tightly packed, in metres, fit to be vertex or storage buffers
+ * of the same device. Only `dispose()` destroys them: their own `destroy()` does nothing, as a renderer may call it.
+ */
+export class ClothBuffers {
+  /** Tells this answer of `predictCloth` from arrays. */
+  readonly output = 'gpu';
+  /** World positions of the cloth vertices [3·n]. */
+  readonly positions: GPUBuffer;
+  /** World unit normals of the cloth vertices [3·n]. */
+  readonly normals: GPUBuffer;
+  /** Positions and normals of the drawn vertices [3·d]: `positions` and `normals` where the model has no surface of its own. */
+  readonly drawnPositions: GPUBuffer;
+  readonly drawnNormals: GPUBuffer;
+  /** The device they are on. */
+  readonly device: GPUDevice;
+
+  #predictor: GpuPredictor | undefined;
+
+  /** @internal */
+  constructor(predictor: GpuPredictor, device: GPUDevice) {
+    this.#predictor = predictor;
+    this.device = device;
+    [this.positions, this.drawnPositions, this.normals, this.drawnNormals] = predictor.buffers();
+    for (const buffer of this.#all()) Object.defineProperty(buffer, 'destroy', { value: () => undefined, configurable: true });
+  }
+
+  /** True after `dispose()` of these buffers or of their model. */
+  get disposed(): boolean {
+    return this.#predictor === undefined;
+  }
+
+  /** @internal Submits a prediction for the pose that `cpu` holds; false if that failed, and then `cpu` knows why. */
+  predict(cpu: Predictor, streams: Streams): boolean {
+    return this.#predictor!.predict(cpu, streams);
+  }
+
+  /** @internal Positions and normals of the last prediction. */
+  async read(): Promise<[Float32Array, Float32Array]> {
+    try {
+      return await this.#predictor!.read();
+    } catch (cause) {
+      throw fromCore(cause);
+    }
+  }
+
+  /** Frees them. A second call does nothing. */
+  dispose(): void {
+    for (const buffer of this.#all()) delete (buffer as { destroy?: unknown }).destroy;
+    this.#predictor?.free();
+    this.#predictor = undefined;
+  }
+
+  #all(): Set<GPUBuffer> {
+    return new Set([this.positions, this.normals, this.drawnPositions, this.drawnNormals]);
+  }
+}
