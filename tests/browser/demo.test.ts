@@ -7,7 +7,7 @@ import { ask, out, Site } from './page.js';
 import { difference } from './safetensors.js';
 import tolerances from './tolerances.json' with { type: 'json' };
 
-const model = fileURLToPath(new URL('../../www/public/tunic.safetensors', import.meta.url));
+const model = fileURLToPath(new URL('../../www/public/tshirt.safetensors', import.meta.url));
 /** Software rendering takes its time. */
 const patience = { timeout: 60_000 };
 let site: Site;
@@ -90,10 +90,10 @@ test('?pose=CLIP:FRAME freezes the page at that frame', async () => {
 });
 
 test('a failure is told on the page: no model, a broken model, no such clip', async () => {
-  const tunic = '**/tunic.safetensors';
-  const missing = await site.visit('', (page) => page.route(tunic, (route) => route.fulfill({ status: 404 })));
+  const shirt = '**/tshirt.safetensors';
+  const missing = await site.visit('', (page) => page.route(shirt, (route) => route.fulfill({ status: 404 })));
   expect(await missing.page.getByRole('alert').textContent()).toContain('HTTP 404');
-  const broken = await site.visit('', (page) => page.route(tunic, (route) => route.fulfill({ body: 'no model at all' })));
+  const broken = await site.visit('', (page) => page.route(shirt, (route) => route.fulfill({ body: 'no model at all' })));
   expect(await broken.page.getByRole('alert').textContent()).toContain('not a safetensors file');
   await broken.page.screenshot({ path: `${out}/failure.png` });
   const nowhere = await site.visit('?pose=no_such_clip:1');

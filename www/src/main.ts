@@ -20,19 +20,19 @@ function showProgress(file: string, progress: Progress): void {
   }
   const bar = element<HTMLProgressElement>('progress');
   if (Number.isFinite(total)) Object.assign(bar, { max: total, value: loaded });
-  element('progress-text').textContent = `Loading the character and its tunic: ${formatBytes(loaded)}`;
+  element('progress-text').textContent = `Loading the character and its T-shirt: ${formatBytes(loaded)}`;
 }
 
 async function load(): Promise<[Character, ClothModel, number]> {
   const body = new FileLoader().setResponseType('arraybuffer');
   const base = import.meta.env.BASE_URL;
   const [glb, model] = await Promise.all([
-    body.loadAsync(`${base}mannequin.glb`, ({ loaded, total, lengthComputable }) => {
+    body.loadAsync(`${base}andy.glb`, ({ loaded, total, lengthComputable }) => {
       showProgress('character', lengthComputable ? { loaded, total } : { loaded });
     }),
-    loadModel(`${base}tunic.safetensors`, { backend: 'cpu' as BackendChoice, onProgress: (progress) => showProgress('tunic', progress) }),
+    loadModel(`${base}tshirt.safetensors`, { backend: 'cpu' as BackendChoice, onProgress: (progress) => showProgress('model', progress) }),
   ]);
-  return [await Character.parse(glb as ArrayBuffer), model, received.get('tunic')?.loaded ?? 0];
+  return [await Character.parse(glb as ArrayBuffer), model, received.get('model')?.loaded ?? 0];
 }
 
 async function start(): Promise<void> {

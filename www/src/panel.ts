@@ -20,7 +20,7 @@ export interface Figures {
 const explanations: Record<StreamChoice, string> = {
   both: 'Both streams: the drape of the body’s pose, and the folds that nearby vertices settle among themselves.',
   skeleton: 'Only what the skeleton’s pose says: the coarse drape, without the folds of the mesh stream.',
-  none: 'No network: the tunic bends with the bones, as game characters’ clothes usually do.',
+  none: 'No network: the T-shirt bends with the bones, as game characters’ clothes usually do.',
 };
 
 /** The element with that id, which index.html promises. */
