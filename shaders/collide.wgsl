@@ -32,10 +32,6 @@ fn normal(vertex: u32) -> vec3<f32> {
     return vec3(body_normals[3u * vertex], body_normals[3u * vertex + 1u], body_normals[3u * vertex + 2u]);
 }
 
-fn squared(way: vec3<f32>) -> f32 {
-    return dot(way, way);
-}
-
 // The nearest vertex downhill from the nearest seed.
 fn walk(i: u32, point: vec3<f32>) -> u32 {
     var best = seeds_of[i];
@@ -61,27 +57,13 @@ fn walk(i: u32, point: vec3<f32>) -> u32 {
     return best;
 }
 
-// Share of the way from a point along an edge to where it is closest.
-fn along(offset: vec3<f32>, way: vec3<f32>) -> f32 {
-    return select(0.0, clamp(dot(offset, way) / squared(way), 0.0, 1.0), squared(way) > 0.0);
-}
-
-// Barycentric coordinates of the point of triangle abc closest to the point: by areas inside, else on the nearest edge.
-fn closest(point: vec3<f32>, a: vec3<f32>, b: vec3<f32>, c: vec3<f32>) -> vec3<f32> {
-    let across = cross(b - a, c - a);
-    if (squared(across) > 0.0) {
-        let v = dot(cross(point - a, c - a), across) / squared(across);
-        let w = dot(cross(b - a, point - a), across) / squared(across);
-        if (v >= 0.0 && w >= 0.0 && v + w <= 1.0) {
-            return vec3(1.0 - v - w, v, w);
-        }
+// Whether the triangles around a vertex lie below the gap under the point.
+fn is_clear(point: vec3<f32>, vertex: u32) -> bool {
+    var top = 0.0;
+    for (var k = offsets[vertex]; k < offsets[vertex + 1u]; k++) {
+        top = max(top, dot(position(fans[k].x) - position(vertex), normal(vertex)));
     }
-    let s = along(point - a, b - a);
-    let t = along(point - a, c - a);
-    let u = along(point - b, c - b);
-    let on = vec3(squared(point - mix(a, b, s)), squared(point - mix(a, c, t)), squared(point - mix(b, c, u)));
-    let ab_or_ac = select(vec3(1.0 - s, s, 0.0), vec3(1.0 - t, 0.0, t), on.y < on.x);
-    return select(ab_or_ac, vec3(0.0, 1.0 - u, u), on.z < min(on.x, on.y));
+    return dot(point - position(vertex), normal(vertex)) - top > params.gap;
 }
 
 @compute @workgroup_size(64)
@@ -112,7 +94,7 @@ fn collide(@builtin(global_invocation_id) id: vec3<u32>) {
     let up = steep / max(length, 1e-30);
     let height = dot(point - foot, up);
     let beside = least > params.gap * params.gap && abs(height) < params.steepest * sqrt(least);
-    let moved = length > 1e-3 && !beside && height > -params.depth && height < params.gap;
+    let moved = !is_clear(point, vertex) && length > 1e-3 && !beside && height > -params.depth && height < params.gap;
     let by = select(vec3(0.0), up * (params.gap - height), moved);
     push[3u * i] = by.x;
     push[3u * i + 1u] = by.y;

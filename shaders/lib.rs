@@ -124,7 +124,7 @@ shaders! {
     /// Joints, inverse bind, mean and deviation -> transforms, pose vector.
     BODY_FRAME: BodyFrame, "body_frame" + [], [Read Read Read Write Write], [64, 1];
     /// Body, its normals, offsets, fans, seeds, positions -> push.
-    COLLIDE: Collide, "collide" + [], [Read Read Read Read Read Read Write], [64, 1];
+    COLLIDE: Collide, "collide" + ["collide.triangle"], [Read Read Read Read Read Read Write], [64, 1];
     /// V, T_C -> nodes, potentials.
     FEATURES: Features, "features" + [], [Read Read Write Write], [64, 1];
     /// Displacement -> positions.

@@ -46,7 +46,11 @@ impl Posed<'_> {
 
     /// The displacement that brings `point` to the gap; `None` where there is room.
     fn push(&self, point: Vec3, seeds: &[u32]) -> Option<Vec3> {
-        let (foot, normal) = self.closest(point, self.walk(point, seeds))?;
+        let vertex = self.walk(point, seeds);
+        if self.is_clear(point, vertex) {
+            return None;
+        }
+        let (foot, normal) = self.closest(point, vertex)?;
         let (height, distance) = ((point - foot).dot(normal), point.distance(foot));
         let beside = distance > GAP && height.abs() < STEEPEST * distance;
         (!beside && height > -DEPTH && height < GAP).then(|| normal * (GAP - height))
@@ -67,6 +71,14 @@ impl Posed<'_> {
             best = next;
         }
         best.0
+    }
+
+    /// Whether the triangles around a vertex lie below the gap under `point`: below their highest corner, along the vertex's normal.
+    fn is_clear(&self, point: Vec3, vertex: u32) -> bool {
+        let (up, foot) = (Vec3::from_array(self.normals[vertex as usize]), self.position(vertex));
+        let height = |at: Vec3| (at - foot).dot(up);
+        let top = self.fan(vertex).iter().fold(0.0, |top: f32, corners| top.max(height(self.position(corners[0]))));
+        height(point) - top > GAP
     }
 
     /// The closest point of the triangles around a vertex, and the interpolated unit normal there.
