@@ -92,8 +92,9 @@ fn collide(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let length = sqrt(squared(steep));
     let up = steep / max(length, 1e-30);
-    let height = dot(point - foot, up);
-    let beside = least > params.gap * params.gap && abs(height) < params.steepest * sqrt(least);
+    let along_up = dot(point - foot, up);
+    let beside = least > params.gap * params.gap && abs(along_up) < params.steepest * sqrt(least);
+    let height = select(along_up, sqrt(least), along_up > 0.0);
     let moved = !is_clear(point, vertex) && length > 1e-3 && !beside && height > -params.depth && height < params.gap;
     let by = select(vec3(0.0), up * (params.gap - height), moved);
     push[3u * i] = by.x;

@@ -53,6 +53,8 @@ impl Posed<'_> {
         let (foot, normal) = self.closest(point, vertex)?;
         let (height, distance) = ((point - foot).dot(normal), point.distance(foot));
         let beside = distance > GAP && height.abs() < STEEPEST * distance;
+        // Outside, the distance itself: what has room must not move, whatever the normals at a ridge are.
+        let height = if height > 0.0 { distance } else { height };
         (!beside && height > -DEPTH && height < GAP).then(|| normal * (GAP - height))
     }
 
