@@ -71,6 +71,8 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         checkpoint: arguments.output.with_extension("checkpoint"),
         curve: arguments.output.with_extension("curve.csv"),
     };
+    // Before the training: what cannot be made of this body must not be found out after hours.
+    let body = body(&dataset.setup, &slices.train)?;
     let mut trainer = arguments.settings.trainer(&dataset.setup, &slices)?;
     if files.checkpoint.exists() {
         trainer.resume(&files.checkpoint)?;
@@ -81,8 +83,9 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     match (end, trainer.best()) {
         (End::Diverged(error), None) => Err(error.into()),
         (_, None) => Err(anyhow!("no epoch was trained: wanted at least one")),
-        (end, Some((best, model))) => {
-            let bytes = arguments.settings.store(&dataset.setup, &slices, &trainer, &best, model)?;
+        (end, Some((best, mut model))) => {
+            model.body = Some(body);
+            let bytes = arguments.settings.store(&dataset.setup, &slices, &trainer, &best, model);
             dataset::write(&arguments.output, &bytes)?;
             std::fs::remove_file(&files.checkpoint).ok();
             println!("{name}: {} bytes, of epoch {}: {}", bytes.len(), best.epoch, errors(&best));
@@ -113,14 +116,7 @@ impl Settings {
     }
 
     /// The model file: the best epoch's model, and what it was trained on. Nothing in it depends on the hour.
-    fn store(
-        &self,
-        setup: &Setup,
-        slices: &Slices,
-        trainer: &Trainer,
-        best: &Row,
-        mut model: HostModel,
-    ) -> Result<Vec<u8>> {
+    fn store(&self, setup: &Setup, slices: &Slices, trainer: &Trainer, best: &Row, mut model: HostModel) -> Vec<u8> {
         let part = |part: &Part| format!("{part:?}").to_lowercase();
         let summary = serde_json::json!({
             "character": setup.description.character,
@@ -138,11 +134,10 @@ impl Settings {
             "ctsn": env!("CARGO_PKG_VERSION"),
         });
         model.training = Some(summary.to_string());
-        model.body = Some(body(setup, &slices.train)?);
-        Ok(model.to_bytes(match self.storage {
+        model.to_bytes(match self.storage {
             StorageArgument::F32 => Storage::F32,
             StorageArgument::F16 => Storage::F16,
-        }))
+        })
     }
 }
 
