@@ -27,11 +27,14 @@ export function flags() {
 }
 
 /**
- * The environment to start the browser in: WebGL and WebGPU share one Vulkan driver there, and it must be Chromium's own
- * SwiftShader; Mesa's, where it is installed, gives no WebGL.
+ * Variables that tell the browser its Vulkan driver: WebGL and WebGPU share one there, and it must be Chromium's own SwiftShader;
+ * Mesa's, where it is installed, gives no WebGL.
  */
-export function environment() {
+export function vulkan() {
   const folders = [path.dirname(realpathSync(chromium())), '/usr/lib/chromium', '/usr/lib64/chromium'];
   const driver = folders.map((folder) => path.join(folder, 'vk_swiftshader_icd.json')).find((file) => existsSync(file));
-  return { ...process.env, ...(driver && { VK_ICD_FILENAMES: driver, VK_DRIVER_FILES: driver }) };
+  return driver ? { VK_ICD_FILENAMES: driver, VK_DRIVER_FILES: driver } : {};
 }
+
+/** The environment to start the browser in. */
+export const environment = () => ({ ...process.env, ...vulkan() });

@@ -1,6 +1,6 @@
 // npm test: every suite, one after the other; a suite that cannot run has failed. Ends with the sum of all.
 import { existsSync, mkdirSync, readFileSync, rmSync } from 'node:fs';
-import { chromedriver, chromium, environment } from './browser.mjs';
+import { chromedriver, chromium, vulkan } from './browser.mjs';
 import { buildLibrary } from './library.mjs';
 import { at, main, need, run, say, Stop } from './step.mjs';
 import { ensureToolchain } from './toolchain.mjs';
@@ -34,7 +34,7 @@ const suites = {
   'native: the workspace': () => cargo(['--workspace', '--', '--show-output']),
   'browser: the core as WebAssembly with simd128': () =>
     cargo(['--package', 'ctsn-tests', '--target', 'wasm32-unknown-unknown'], {
-      ...environment(),
+      ...vulkan(),
       CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUNNER: 'wasm-bindgen-test-runner',
       CHROMEDRIVER: chromedriver(),
       WASM_BINDGEN_TEST_TIMEOUT: '600',
