@@ -1,5 +1,7 @@
 //! The browser's door: hands `ctsn_core::Predictor`, and in `gpu.rs` that of `ctsn_gpu`, to JavaScript. No arithmetic here;
 //! its twin on the other side of the wall is `web/src/raw.ts`, the one file that imports what wasm-bindgen makes of this.
+// Elsewhere there is no browser to be the door of.
+#![cfg(target_arch = "wasm32")]
 
 mod gpu;
 
