@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::collider::Collider;
 use super::path::to_body_frame;
+use super::posed::PosedBody;
 use crate::Result;
 use crate::rig::{Character, Mesh, Pose};
 
@@ -27,10 +28,15 @@ impl BodyDistance {
         Ok(Self { character: character.clone(), collider })
     }
 
+    /// The body in `pose` (world), in its body frame.
+    fn posed(&self, pose: &Pose) -> PosedBody<'_> {
+        self.collider.pose(&self.character.skinning(&to_body_frame(&self.character, pose)))
+    }
+
     /// Signed distance of each vertex [n] (body frame, metres) to the body in `pose` (world), negative inside;
     /// infinite where the body is further than half a metre.
     pub fn signed(&self, pose: &Pose, vertices: &[DVec3]) -> Vec<f64> {
-        let body = self.collider.pose(&self.character.skinning(&to_body_frame(&self.character, pose)));
+        let body = self.posed(pose);
         let distance = |vertex: &DVec3| body.closest(*vertex, None, 0.5).map_or(f64::INFINITY, |hit| hit.distance);
         vertices.iter().map(distance).collect()
     }
@@ -38,7 +44,7 @@ impl BodyDistance {
     /// Moves vertices [n] (body frame, metres) that lie inside the body in `pose` (world) out of it, where that takes at most `limit`
     /// metres; how many were moved.
     pub fn lift(&self, pose: &Pose, vertices: &mut [DVec3], limit: f64) -> usize {
-        let body = self.collider.pose(&self.character.skinning(&to_body_frame(&self.character, pose)));
+        let body = self.posed(pose);
         let mut moved = 0;
         for vertex in vertices {
             let mut place = *vertex;
