@@ -33,7 +33,7 @@ impl Elements {
 }
 
 /// Whether a segment passes through a triangle.
-fn pierces([start, end]: [DVec3; 2], [a, b, c]: [DVec3; 3]) -> bool {
+pub(super) fn pierces([start, end]: [DVec3; 2], [a, b, c]: [DVec3; 3]) -> bool {
     let (direction, ab, ac) = (end - start, b - a, c - a);
     let across = direction.cross(ac);
     let determinant = ab.dot(across);

@@ -41,6 +41,12 @@ impl BodyDistance {
         vertices.iter().map(distance).collect()
     }
 
+    /// How many of the cloth's `edges` pass through a face of the body in `pose` (world); vertices [n], body frame, metres.
+    pub fn crossed(&self, pose: &Pose, vertices: &[DVec3], edges: impl Iterator<Item = [usize; 2]>) -> usize {
+        let body = self.posed(pose);
+        edges.filter(|ends| body.crosses(ends.map(|end| vertices[end]))).count()
+    }
+
     /// Moves vertices [n] (body frame, metres) that lie inside the body in `pose` (world) out of it, where that takes at most `limit`
     /// metres; how many were moved.
     pub fn lift(&self, pose: &Pose, vertices: &mut [DVec3], limit: f64) -> usize {

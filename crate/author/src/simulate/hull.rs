@@ -17,7 +17,7 @@ const ROUNDS: usize = 4;
 /// Joints a vertex of the skin may follow.
 const JOINTS: usize = 6;
 
-/// The character with its outer skin, of about so many vertices, for a body.
+/// The character with its outer skin, of about so many vertices, for a body; a vertex follows the body point under it.
 pub fn hull(character: &Character, garment: &Mesh, vertices: usize) -> Result<Character> {
     let (mut mesh, distance) = garment::hull(character, vertices)?;
     let collider = Collider::new(character, garment, f64::MAX)?;
@@ -31,12 +31,21 @@ pub fn hull(character: &Character, garment: &Mesh, vertices: usize) -> Result<Ch
         weights.push(collider.skin(hit.face, hit.barycentric));
         *position -= hit.normal * (distance - GAP).min(hit.distance - GAP);
     }
-    smooth(&mesh, &mut weights);
+    weights.iter_mut().for_each(strongest);
     Ok(Character { body: mesh, weights, ..character.clone() })
 }
 
-/// Averages the weights over neighbours and keeps the strongest.
-fn smooth(mesh: &Mesh, weights: &mut Vec<SkinWeights>) {
+/// Keeps the weights of the strongest joints.
+fn strongest(row: &mut SkinWeights) {
+    row.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+    row.truncate(JOINTS);
+    let total: f64 = row.iter().map(|(_, weight)| weight).sum();
+    row.iter_mut().for_each(|(_, weight)| *weight /= total);
+}
+
+/// Averages the weights of a fine skin over its neighbours. On a coarse one that would reach so far that it no longer follows the body.
+pub(super) fn smooth(skin: &mut Character) {
+    let Character { body: mesh, weights, .. } = skin;
     let mut neighbours = vec![Vec::new(); mesh.positions.len()];
     for triangle in &mesh.triangles {
         for k in 0..3 {
@@ -52,10 +61,7 @@ fn smooth(mesh: &Mesh, weights: &mut Vec<SkinWeights>) {
                 row.iter().for_each(|(joint, weight)| *sum.entry(*joint).or_insert(0.0) += share * weight);
             }
             let mut row: SkinWeights = sum.into_iter().collect();
-            row.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
-            row.truncate(JOINTS);
-            let total: f64 = row.iter().map(|(_, weight)| weight).sum();
-            row.iter_mut().for_each(|(_, weight)| *weight /= total);
+            strongest(&mut row);
             row
         };
         *weights = weights.iter().zip(&neighbours).map(mean).collect();

@@ -8,6 +8,7 @@ use parry3d_f64::partitioning::{Bvh, BvhNode};
 
 use super::burial::winding;
 use super::collider::{Collider, bounds};
+use super::crossing::pierces;
 use super::proximity::closest_on_triangle;
 
 /// How far behind a face a point may lie and still be pushed out through it, metres.
@@ -102,6 +103,15 @@ impl<'a> PosedBody<'a> {
             known.set(Some(buried));
             buried
         })
+    }
+
+    /// Whether a segment passes through a face that cloth touches.
+    pub fn crosses(&self, ends: [DVec3; 2]) -> bool {
+        let corners = |face: u32| self.collider.faces[face as usize].map(|i| self.positions[i as usize]);
+        let around = bounds([ends[0], ends[1], ends[1]]);
+        self.tree
+            .intersect_aabb(&around)
+            .any(|face| self.collider.touched[face as usize] && pierces(ends, corners(face)))
     }
 
     fn search(&self, point: DVec3, tracked: Option<u32>, reach: f64, faces: Faces) -> Option<Hit> {
