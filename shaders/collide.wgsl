@@ -32,11 +32,11 @@ fn normal(vertex: u32) -> vec3<f32> {
     return vec3(body_normals[3u * vertex], body_normals[3u * vertex + 1u], body_normals[3u * vertex + 2u]);
 }
 
-// The nearest vertex downhill from the nearest seed.
-fn walk(i: u32, point: vec3<f32>) -> u32 {
-    var best = seeds_of[i];
-    var least = squared(point - position(best));
-    for (var s = 1u; s < params.seeds; s++) {
+// The nearest vertex downhill from the nearest of some seeds.
+fn walk(i: u32, point: vec3<f32>, first: u32, end: u32) -> u32 {
+    var best = 0u;
+    var least = 3.4e38;
+    for (var s = first; s < end; s++) {
         let vertex = seeds_of[s * params.vertices + i];
         let found = squared(point - position(vertex));
         best = select(best, vertex, found < least);
@@ -66,14 +66,11 @@ fn is_clear(point: vec3<f32>, vertex: u32) -> bool {
     return dot(point - position(vertex), normal(vertex)) - top > params.gap;
 }
 
-@compute @workgroup_size(64)
-fn collide(@builtin(global_invocation_id) id: vec3<u32>) {
-    let i = id.x;
-    if (i >= params.vertices) {
-        return;
+// The displacement to the gap, and the squared distance to the body around a vertex.
+fn push_from(point: vec3<f32>, vertex: u32) -> vec4<f32> {
+    if (is_clear(point, vertex)) {
+        return vec4(0.0, 0.0, 0.0, squared(point - position(vertex)));
     }
-    let point = vec3(positions[3u * i], positions[3u * i + 1u], positions[3u * i + 2u]);
-    let vertex = walk(i, point);
     var least = 3.4e38;
     var foot = vec3(0.0);
     var steep = vec3(0.0);
@@ -94,9 +91,26 @@ fn collide(@builtin(global_invocation_id) id: vec3<u32>) {
     let up = steep / max(length, 1e-30);
     let along_up = dot(point - foot, up);
     let beside = least > params.gap * params.gap && abs(along_up) < params.steepest * sqrt(least);
+    let found = length > 1e-3 && !beside && along_up >= -params.depth;
     let height = select(along_up, sqrt(least), along_up > 0.0);
-    let moved = !is_clear(point, vertex) && length > 1e-3 && !beside && height > -params.depth && height < params.gap;
-    let by = select(vec3(0.0), up * (params.gap - height), moved);
+    return select(vec4(0.0, 0.0, 0.0, 3.4e38), vec4(up * max(params.gap - height, 0.0), least), found);
+}
+
+@compute @workgroup_size(64)
+fn collide(@builtin(global_invocation_id) id: vec3<u32>) {
+    let i = id.x;
+    if (i >= params.vertices) {
+        return;
+    }
+    let point = vec3(positions[3u * i], positions[3u * i + 1u], positions[3u * i + 2u]);
+    let own = max(params.seeds - 1u, 1u);
+    var by = push_from(point, walk(i, point, 0u, own));
+    let last = (params.seeds - 1u) * params.vertices + i;
+    // The last seed lies on another part of the body, where the cloth comes near one: the nearer part decides.
+    if (seeds_of[last] != seeds_of[i]) {
+        let second = push_from(point, walk(i, point, own, params.seeds));
+        by = select(by, second, second.w < by.w);
+    }
     push[3u * i] = by.x;
     push[3u * i + 1u] = by.y;
     push[3u * i + 2u] = by.z;

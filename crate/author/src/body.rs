@@ -22,6 +22,8 @@ const REACH: f64 = 0.15;
 const RINGS: usize = 3;
 /// Places per cloth vertex from which the closest one is searched.
 const SEEDS: usize = 4;
+/// A search that ends so much too far has missed the closest place, metres.
+const MISSED: f64 = 0.004;
 
 /// The body for the cloth of `setup`, as `samples` wear it.
 pub fn body(setup: &Setup, samples: &[&Sample]) -> Result<Body<Vec<f32>, Vec<u32>>> {
@@ -36,7 +38,11 @@ pub fn body(setup: &Setup, samples: &[&Sample]) -> Result<Body<Vec<f32>, Vec<u32
     for (vertex, place) in seen.iter().flat_map(|seen| seen.iter().enumerate()) {
         place.iter().for_each(|place| *visits[vertex].entry(*place).or_insert(0) += 1);
     }
-    let seeds: Vec<[u32; SEEDS]> = visits.iter().map(|visits| spread(&skin.body.positions, visits)).collect();
+    let mut seeds: Vec<[u32; SEEDS]> = visits.iter().map(|visits| spread(&skin.body.positions, visits)).collect();
+    let around = Graph::new(skin.body.positions.len(), skin.body.triangles.as_flattened());
+    let missed = |(sample, seen): (&&&Sample, &Vec<_>)| missed(&skin, &around, &seeds, sample, seen);
+    let missed: Vec<Vec<Option<u32>>> = poses.par_iter().zip(&seen).map(missed).collect();
+    add_other_side(&mut seeds, &missed, &Graph::new(cloth.positions.len(), &setup.triangles));
     Ok(cut(&skin, &visits, &seeds))
 }
 
@@ -53,21 +59,68 @@ fn nearest(skin: &Character, sample: &Sample) -> Result<Vec<Option<u32>>> {
     Ok(vertices(&sample.truth).iter().map(place).collect())
 }
 
-/// Up to [`SEEDS`] of the places: the one seen most, then always the one furthest from those chosen; the first of them again for want
-/// of others.
+/// The place seen most, then always the one that brings what was seen nearest to a seed; the last is left the first.
 fn spread(positions: &[DVec3], visits: &BTreeMap<u32, usize>) -> [u32; SEEDS] {
-    let most = visits.iter().max_by(|a, b| a.1.cmp(b.1).then(b.0.cmp(a.0))).map_or(0, |most| *most.0);
-    let mut seeds = [most; SEEDS];
-    for chosen in 1..SEEDS {
-        let place = |vertex: u32| positions[vertex as usize];
-        let gap = |vertex: &u32| {
-            let distances = seeds[..chosen].iter().map(|seed| place(*seed).distance_squared(place(*vertex)));
-            distances.fold(f64::INFINITY, f64::min)
+    let place = |vertex: &u32| positions[*vertex as usize];
+    let first = most(visits).unwrap_or(0);
+    let mut seeds = [first; SEEDS];
+    let mut distances: Vec<f64> = visits.keys().map(|vertex| place(vertex).distance(place(&first))).collect();
+    for seed in &mut seeds[1..SEEDS - 1] {
+        let gain = |candidate: &u32| {
+            let gain = |((vertex, count), before): ((&u32, &usize), &f64)| {
+                (before - place(vertex).distance(place(candidate))).max(0.0) * *count as f64
+            };
+            visits.iter().zip(&distances).map(gain).sum::<f64>()
         };
-        let furthest = visits.keys().max_by(|a, b| gap(a).total_cmp(&gap(b)));
-        seeds[chosen] = furthest.copied().unwrap_or(most);
+        *seed = visits.keys().copied().max_by(|a, b| gain(a).total_cmp(&gain(b))).unwrap_or(first);
+        let nearer = |(vertex, before): (&u32, &mut f64)| *before = before.min(place(vertex).distance(place(seed)));
+        visits.keys().zip(&mut distances).for_each(nearer);
     }
     seeds
+}
+
+/// The place seen most, the first of equals.
+fn most(visits: &BTreeMap<u32, usize>) -> Option<u32> {
+    visits.iter().max_by(|a, b| a.1.cmp(b.1).then(b.0.cmp(a.0))).map(|most| *most.0)
+}
+
+/// The place closest to each cloth vertex of a pose, where the way downhill from its seeds ends at another, at least [`MISSED`] further
+/// away: on the other side of a crease as in an armpit, or on another limb.
+fn missed(
+    skin: &Character,
+    around: &Graph<Vec<u32>>,
+    seeds: &[[u32; SEEDS]],
+    sample: &Sample,
+    seen: &[Option<u32>],
+) -> Vec<Option<u32>> {
+    let posed = skin.pose_body(&to_body_frame(skin, &pose(&sample.joints)));
+    let find = |((vertex, seeds), seen): ((DVec3, &[u32; SEEDS]), &Option<u32>)| {
+        let distance = |place: u32| posed[place as usize].distance(vertex);
+        let nearest = |places: &[u32], best: u32| {
+            places.iter().fold(best, |best, place| if distance(*place) < distance(best) { *place } else { best })
+        };
+        let mut found = nearest(seeds, seeds[0]);
+        loop {
+            let next = nearest(around.of(found as usize), found);
+            if next == found {
+                break;
+            }
+            found = next;
+        }
+        seen.filter(|seen| distance(*seen) + MISSED < distance(found))
+    };
+    vertices(&sample.truth).into_iter().zip(seeds).zip(seen).map(find).collect()
+}
+
+/// Makes the place that was missed most, by a vertex or its neighbours, its last seed.
+fn add_other_side(seeds: &mut [[u32; SEEDS]], missed: &[Vec<Option<u32>>], cloth: &Graph<Vec<u32>>) {
+    for (vertex, seeds) in seeds.iter_mut().enumerate() {
+        let mut visits = BTreeMap::new();
+        for near in cloth.of(vertex).iter().map(|near| *near as usize).chain([vertex]) {
+            missed.iter().filter_map(|missed| missed[near]).for_each(|place| *visits.entry(place).or_insert(0) += 1);
+        }
+        seeds[SEEDS - 1] = most(&visits).unwrap_or(seeds[0]);
+    }
 }
 
 /// The part of the skin that was seen, [`RINGS`] rings around it included.

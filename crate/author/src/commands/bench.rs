@@ -66,21 +66,23 @@ fn cpu(model: &HostModel, poses: &[&[f32]], runs: usize) -> Result<()> {
     let triangles = model.body.as_ref().map_or(0, |body| body.triangles.len() / 3);
     println!("with repair of penetration against a body of {triangles} triangles, and without");
     let baseline = Level::baseline();
-    for (name, level, model) in
-        [("SIMD", Level::new(), model), ("SIMD without", Level::new(), &bare), ("baseline", baseline, model)]
-    {
-        let mut predictor = Predictor::from_model(model.clone(), level);
-        let mut times: Vec<f64> = Vec::new();
-        for run in 0..runs {
+    let (simd, baseline) = (Level::new(), Level::baseline());
+    let mut predictors = [(simd, model), (simd, &bare), (baseline, model), (baseline, &bare)]
+        .map(|(level, model)| Predictor::from_model(model.clone(), level));
+    // In turn, so that what else the machine does falls on all of them alike.
+    let mut times = [const { Vec::new() }; 4];
+    for run in 0..runs {
+        for (predictor, times) in predictors.iter_mut().zip(&mut times) {
             let start = Instant::now();
             predictor.predict_row_major(poses[run % poses.len()], Streams::Both)?;
             times.push(start.elapsed().as_secs_f64() * 1e3);
         }
+    }
+    for (name, [repaired, bare]) in ["SIMD", "baseline"].into_iter().zip(times.as_chunks_mut::<2>().0) {
+        let (with, without) = (median(repaired), median(bare));
+        let (share, least) = (100.0 * (with / without - 1.0), 100.0 * (repaired[0] / bare[0] - 1.0));
         println!(
-            "{name:<13} {:.2} ms a prediction (median of {}, least {:.2})",
-            median(&mut times),
-            times.len(),
-            times[0]
+            "{name:<9} {with:.2} ms a prediction, {without:.2} without (medians of {runs}): repair is {share:.1} % (of the least {least:.1})"
         );
     }
     Ok(())

@@ -1,6 +1,6 @@
 //! How far cloth vertices must move to lie outside the posed body: the gradient of `E_B` (paper, § Penetration Handling) in one step.
 //! The closest body point is searched by walking over the body's surface from a few seeds kept with the model, so that it depends on
-//! nothing but the pose, and a sleeve does not find the trunk beside its arm. Twin: shaders/collide.wgsl.
+//! nothing but the pose, and cloth does not find a part of the body that it never came near. Twin: shaders/collide.wgsl.
 
 use glam::Vec3;
 
@@ -30,7 +30,7 @@ pub fn collide(positions: &[f32], body: &Posed, seeds: &[u32], push: &mut [f32])
     let positions = positions.as_chunks::<3>().0;
     let seeds = seeds.chunks_exact(seeds.len() / positions.len().max(1));
     for ((point, seeds), push) in positions.iter().zip(seeds).zip(push.as_chunks_mut::<3>().0) {
-        *push = body.push(Vec3::from_array(*point), seeds).unwrap_or_default().to_array();
+        *push = body.push(Vec3::from_array(*point), seeds).to_array();
     }
 }
 
@@ -44,25 +44,43 @@ impl Posed<'_> {
         &self.fans[self.offsets[vertex as usize] as usize..self.offsets[vertex as usize + 1] as usize]
     }
 
-    /// The displacement that brings `point` to the gap; `None` where there is room.
-    fn push(&self, point: Vec3, seeds: &[u32]) -> Option<Vec3> {
-        let vertex = self.walk(point, seeds);
-        if self.is_clear(point, vertex) {
-            return None;
+    /// The displacement that brings `point` to the gap. The last of the seeds lies on another part of the body than the first, where
+    /// the cloth comes near one, as in an armpit: then the nearer part decides.
+    fn push(&self, point: Vec3, seeds: &[u32]) -> Vec3 {
+        let (own, other) = seeds.split_at((seeds.len() - 1).max(1));
+        let found = self.search(point, own);
+        match other {
+            [other] if *other != own[0] => {
+                let second = self.search(point, &[*other]);
+                if second.0 < found.0 { second.1 } else { found.1 }
+            }
+            _ => found.1,
         }
-        let (foot, normal) = self.closest(point, vertex)?;
-        let (height, distance) = ((point - foot).dot(normal), point.distance(foot));
-        let beside = distance > GAP && height.abs() < STEEPEST * distance;
-        // Outside, the distance itself: what has room must not move, whatever the normals at a ridge are.
-        let height = if height > 0.0 { distance } else { height };
-        (!beside && height > -DEPTH && height < GAP).then(|| normal * (GAP - height))
     }
 
-    /// The nearest vertex downhill from the nearest seed.
-    fn walk(&self, point: Vec3, seeds: &[u32]) -> u32 {
+    /// Squared distance to the body below the seeds, and the displacement to its gap; zero where there is room.
+    fn search(&self, point: Vec3, seeds: &[u32]) -> (f32, Vec3) {
+        let (vertex, squared) = self.walk(point, seeds);
+        if self.is_clear(point, vertex) {
+            return (squared, Vec3::ZERO);
+        }
+        let Some((foot, normal)) = self.closest(point, vertex) else { return (f32::INFINITY, Vec3::ZERO) };
+        let (height, distance) = ((point - foot).dot(normal), point.distance(foot));
+        let beside = distance > GAP && height.abs() < STEEPEST * distance;
+        if beside || height < -DEPTH {
+            return (f32::INFINITY, Vec3::ZERO);
+        }
+        // Outside, the distance itself: what has room must not move, whatever the normals at a ridge are.
+        let height = if height > 0.0 { distance } else { height };
+        (distance * distance, normal * (GAP - height).max(0.0))
+    }
+
+    /// The nearest vertex downhill from the nearest seed, and the squared distance to it.
+    fn walk(&self, point: Vec3, seeds: &[u32]) -> (u32, f32) {
+        // Without branches: which one is nearer cannot be foretold.
         let nearer = |best: (u32, f32), vertex: u32| {
             let squared = point.distance_squared(self.position(vertex));
-            if squared < best.1 { (vertex, squared) } else { best }
+            (if squared < best.1 { vertex } else { best.0 }, squared.min(best.1))
         };
         let mut best = seeds.iter().fold((seeds[0], f32::INFINITY), |best, seed| nearer(best, *seed));
         for _ in 0..STEPS {
@@ -72,7 +90,7 @@ impl Posed<'_> {
             }
             best = next;
         }
-        best.0
+        best
     }
 
     /// Whether the triangles around a vertex lie below the gap under `point`: below their highest corner, along the vertex's normal.
