@@ -32,8 +32,15 @@ fn normal(vertex: u32) -> vec3<f32> {
     return vec3(body_normals[3u * vertex], body_normals[3u * vertex + 1u], body_normals[3u * vertex + 2u]);
 }
 
+// Where a walk ended: vertex, squared distance to it, highest corner of the triangles around it along its normal.
+struct Place {
+    vertex: u32,
+    squared: f32,
+    top: f32,
+}
+
 // The nearest vertex downhill from the nearest of some seeds.
-fn walk(i: u32, point: vec3<f32>, first: u32, end: u32) -> u32 {
+fn walk(i: u32, point: vec3<f32>, first: u32, end: u32) -> Place {
     var best = 0u;
     var least = 3.4e38;
     for (var s = first; s < end; s++) {
@@ -44,32 +51,26 @@ fn walk(i: u32, point: vec3<f32>, first: u32, end: u32) -> u32 {
     }
     for (var step = 0u; step < params.steps; step++) {
         let before = best;
+        var top = 0.0;
         for (var k = offsets[before]; k < offsets[before + 1u]; k++) {
             let vertex = fans[k].x;
             let found = squared(point - position(vertex));
+            top = max(top, dot(position(vertex) - position(before), normal(before)));
             best = select(best, vertex, found < least);
             least = min(least, found);
         }
         if (best == before) {
-            break;
+            return Place(best, least, top);
         }
     }
-    return best;
+    return Place(best, least, 3.4e38);
 }
 
-// Whether the triangles around a vertex lie below the gap under the point.
-fn is_clear(point: vec3<f32>, vertex: u32) -> bool {
-    var top = 0.0;
-    for (var k = offsets[vertex]; k < offsets[vertex + 1u]; k++) {
-        top = max(top, dot(position(fans[k].x) - position(vertex), normal(vertex)));
-    }
-    return dot(point - position(vertex), normal(vertex)) - top > params.gap;
-}
-
-// The displacement to the gap, and the squared distance to the body around a vertex.
-fn push_from(point: vec3<f32>, vertex: u32) -> vec4<f32> {
-    if (is_clear(point, vertex)) {
-        return vec4(0.0, 0.0, 0.0, squared(point - position(vertex)));
+// The displacement to the gap, and the squared distance to the body around a place.
+fn push_from(point: vec3<f32>, place: Place) -> vec4<f32> {
+    let vertex = place.vertex;
+    if (dot(point - position(vertex), normal(vertex)) - place.top > params.gap) {
+        return vec4(0.0, 0.0, 0.0, place.squared);
     }
     var least = 3.4e38;
     var foot = vec3(0.0);

@@ -65,7 +65,6 @@ fn cpu(model: &HostModel, poses: &[&[f32]], runs: usize) -> Result<()> {
     let bare = HostModel { body: None, ..model.clone() };
     let triangles = model.body.as_ref().map_or(0, |body| body.triangles.len() / 3);
     println!("with repair of penetration against a body of {triangles} triangles, and without");
-    let baseline = Level::baseline();
     let (simd, baseline) = (Level::new(), Level::baseline());
     let mut predictors = [(simd, model), (simd, &bare), (baseline, model), (baseline, &bare)]
         .map(|(level, model)| Predictor::from_model(model.clone(), level));

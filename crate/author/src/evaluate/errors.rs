@@ -28,10 +28,14 @@ pub struct Errors {
     pub penetrating: f64,
     /// Greatest depth inside the body in any frame, metres.
     pub depth: f64,
+    /// Share of the cloth's edges that pass through a face of the body, mean over frames.
+    pub crossing: f64,
     /// Mean over edges and frames of `|l_p - l_g| / l_rest`: lengths predicted and true, against the length at rest.
     pub stretch: f64,
     /// Mean acceleration of vertices, m/s²: see [`super::jitter`]; `None` where no three frames follow each other.
     pub jitter: Option<f64>,
+    /// The same in slow motion between the judged poses, see [`super::slow`]; `None` where it was not predicted.
+    pub slow_jitter: Option<f64>,
 }
 
 impl Statistic {
@@ -59,8 +63,10 @@ impl Errors {
             scaled: 1e3 * distance.mean / size,
             penetrating: over(|frame| frame.penetrating).mean,
             depth: frames.iter().map(|frame| frame.depth).fold(0.0, f64::max),
+            crossing: over(|frame| frame.crossing).mean,
             stretch: over(|frame| frame.stretch).mean,
             jitter,
+            slow_jitter: None,
         }
     }
 }

@@ -23,6 +23,8 @@ pub struct Frame {
     pub penetrating: f64,
     /// Greatest depth inside the body, metres.
     pub depth: f64,
+    /// Share of the cloth's edges that pass through a face of the body.
+    pub crossing: f64,
     /// Mean over edges of `|l_p - l_g| / l_rest`.
     pub stretch: f64,
 }
@@ -75,6 +77,11 @@ impl<'a> Judge<'a> {
         (&self.character, crate::simulate::to_body_frame(&self.character, &rig::pose(&sample.joints)))
     }
 
+    /// The pose a share `t` of the way from `a` to `b`.
+    pub fn between(&self, a: &Sample, b: &Sample, t: f64) -> Pose {
+        crate::simulate::between(&self.character, &rig::pose(&a.joints), &rig::pose(&b.joints), t)
+    }
+
     /// Judges `positions` [samples][n], body frame.
     pub fn run(&self, samples: &[&Sample], positions: Vec<Vec<DVec3>>) -> Run {
         let frames = samples.par_iter().zip(&positions).map(|(sample, predicted)| self.frame(sample, predicted));
@@ -84,15 +91,18 @@ impl<'a> Judge<'a> {
     fn frame(&self, sample: &Sample, predicted: &[DVec3]) -> Frame {
         let truth = vertices(&sample.truth);
         let (distance, normal) = differences(predicted, &truth, &self.setup.triangles);
-        let signed = self.body.signed(&rig::pose(&sample.joints), predicted);
+        let pose = rig::pose(&sample.joints);
+        let signed = self.body.signed(&pose, predicted);
         let inside = signed.iter().filter(|distance| **distance < 0.0).count() as f64;
         let depth = signed.iter().fold(0.0, |depth: f64, distance| depth.max(-distance));
         let stretch = self
             .edges
             .iter()
             .map(|([i, j], rest)| (predicted[*i].distance(predicted[*j]) - truth[*i].distance(truth[*j])).abs() / rest);
-        let stretch = stretch.sum::<f64>() / self.edges.len() as f64;
-        Frame { distance, normal, penetrating: inside / predicted.len() as f64, depth, stretch }
+        let edges = self.edges.len() as f64;
+        let crossed = self.body.crossed(&pose, predicted, self.edges.iter().map(|(ends, _)| *ends));
+        let (penetrating, crossing) = (inside / predicted.len() as f64, crossed as f64 / edges);
+        Frame { distance, normal, penetrating, depth, crossing, stretch: stretch.sum::<f64>() / edges }
     }
 
     /// Errors of `run` over the samples in `range`.

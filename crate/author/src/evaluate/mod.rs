@@ -4,6 +4,8 @@ mod errors;
 mod judge;
 pub mod page;
 mod pictures;
+mod repair;
+mod slow;
 mod table;
 #[cfg(test)]
 mod tests;
@@ -59,6 +61,8 @@ pub struct FrameErrors {
     pub frame: usize,
     /// The whole network.
     pub network: Frame,
+    /// The whole network before penetration is repaired; null where the model repairs nothing.
+    pub unrepaired: Option<Frame>,
     /// Plain skinning.
     pub skinning: Frame,
 }
@@ -123,16 +127,29 @@ pub fn predictions(model: &HostModel, judge: &Judge, samples: &[&Sample], stream
     samples.par_iter().map_init(start, predict).collect()
 }
 
+/// The same model without the repair of penetration; `None` where it repairs nothing.
+fn without_repair(model: &HostModel) -> Option<HostModel> {
+    model.body.as_ref().map(|_| HostModel { body: None, ..model.clone() })
+}
+
 /// Evaluates `model` on one split of `dataset`.
 pub fn evaluate(model: &HostModel, dataset: &Dataset, split: Split) -> Result<Report> {
     judge::check_same(model, dataset)?;
     let samples = unseen(dataset, split)?;
     let judge = Judge::new(&dataset.setup)?;
-    let bare = model.body.as_ref().map(|_| HostModel { body: None, ..model.clone() });
-    let unrepaired = bare.map(|bare| predictions(&bare, &judge, &samples, Streams::Both)).transpose()?;
-    let run = |streams| Ok::<_, Error>(judge.run(&samples, predictions(model, &judge, &samples, streams)?));
-    let (network, skinning) = (run(Streams::Both)?, run(Streams::None)?);
+    let run = |model: &HostModel, streams| {
+        Ok::<_, Error>(judge.run(&samples, predictions(model, &judge, &samples, streams)?))
+    };
+    let bare = without_repair(model);
+    let unrepaired = bare.as_ref().map(|bare| run(bare, Streams::Both)).transpose()?;
+    let (network, skinning) = (run(model, Streams::Both)?, run(model, Streams::None)?);
     let whole = |run: &Run| judge.errors(&samples, run, 0..samples.len());
+    let slow = slow::motion(&judge, &samples);
+    let slow: Vec<&Sample> = slow.iter().collect();
+    let moving = |run: &Run, model: &HostModel| {
+        let positions = predictions(model, &judge, &slow, Streams::Both)?;
+        Ok::<_, Error>(Errors { slow_jitter: jitter(&slow, &positions, slow::RATE), ..whole(run) })
+    };
     let truth = judge.run(&samples, samples.iter().map(|sample| vertices(&sample.truth)).collect());
     let of_network = judge.by_vertex(&samples, &network);
     let description = &dataset.setup.description;
@@ -142,15 +159,15 @@ pub fn evaluate(model: &HostModel, dataset: &Dataset, split: Split) -> Result<Re
         vertices: model.sizes.vertices,
         size: judge.size,
         rejected: dataset.rejected.len(),
-        unrepaired: unrepaired.map(|predictions| whole(&judge.run(&samples, predictions))),
-        skeleton: whole(&run(Streams::Skeleton)?),
+        unrepaired: unrepaired.as_ref().zip(bare.as_ref()).map(|(run, bare)| moving(run, bare)).transpose()?,
+        skeleton: whole(&run(model, Streams::Skeleton)?),
         truth: whole(&truth),
         ratio: whole(&network).distance.mean / whole(&skinning).distance.mean,
         clips: by_clip(dataset, &judge, &samples, &network, &skinning),
         joints: by_joint(dataset, &of_network, &judge.by_vertex(&samples, &skinning))?,
-        frames: by_frame(dataset, &samples, &network, &skinning),
+        frames: by_frame(dataset, &samples, &network, unrepaired.as_ref(), &skinning),
         by_vertex: of_network.into_iter().map(|(distance, _)| distance).collect(),
-        network: whole(&network),
+        network: moving(&network, model)?,
         skinning: whole(&skinning),
     })
 }
@@ -211,15 +228,22 @@ fn by_joint(dataset: &Dataset, network: &[(f64, f64)], skinning: &[(f64, f64)]) 
     Ok(joints)
 }
 
-fn by_frame(dataset: &Dataset, samples: &[&Sample], network: &Run, skinning: &Run) -> Vec<FrameErrors> {
+fn by_frame(
+    dataset: &Dataset,
+    samples: &[&Sample],
+    network: &Run,
+    unrepaired: Option<&Run>,
+    skinning: &Run,
+) -> Vec<FrameErrors> {
     let clips = &dataset.setup.description.clips;
-    let frame = |((sample, network), skinning): ((&&Sample, &Frame), &Frame)| FrameErrors {
+    let frame = |(i, sample): (usize, &&Sample)| FrameErrors {
         clip: clips[sample.record.clip].clone(),
         frame: sample.record.frame,
-        network: *network,
-        skinning: *skinning,
+        network: network.frames[i],
+        unrepaired: unrepaired.map(|run| run.frames[i]),
+        skinning: skinning.frames[i],
     };
-    let mut frames: Vec<_> = samples.iter().zip(&network.frames).zip(&skinning.frames).map(frame).collect();
+    let mut frames: Vec<_> = samples.iter().enumerate().map(frame).collect();
     frames.sort_by(|a, b| b.network.distance.total_cmp(&a.network.distance));
     frames
 }

@@ -1,6 +1,7 @@
 //! Pictures of truth and prediction beside each other, from one camera, and where the error is.
 
-use super::{Judge, Report, predictions, unseen, vertex_errors};
+use super::repair::{self, Repaired};
+use super::{FrameErrors, Judge, Report, predictions, unseen, vertex_errors};
 use crate::Result;
 use crate::dataset::{Dataset, Sample, Split};
 use crate::html::picture;
@@ -25,6 +26,8 @@ pub struct Gallery {
     frames: Vec<(String, Vec<[Markup; 3]>)>,
     /// Mean error by vertex on the garment at rest [views].
     mean: Vec<Markup>,
+    /// Frames before and after the repair of penetration.
+    repaired: Vec<Repaired>,
 }
 
 /// The frames to show, as indices into the report: the worst of each clip, and one that half of all frames exceed.
@@ -50,13 +53,13 @@ impl Gallery {
     pub fn new(model: &HostModel, dataset: &Dataset, report: &Report) -> Result<Self> {
         let judge = Judge::new(&dataset.setup)?;
         let (all, clips) = (unseen(dataset, Split::Test)?, &dataset.setup.description.clips);
-        let sample = |i: usize| {
-            let frame = &report.frames[i];
+        let sample = |frame: &FrameErrors| {
             let same =
                 |sample: &&&Sample| (&clips[sample.record.clip], sample.record.frame) == (&frame.clip, frame.frame);
-            all.iter().find(same).map(|sample| (i, *sample))
+            all.iter().find(same).copied()
         };
-        let (chosen, samples): (Vec<usize>, Vec<&Sample>) = choose(report).into_iter().filter_map(sample).unzip();
+        let (chosen, samples): (Vec<usize>, Vec<&Sample>) =
+            choose(report).into_iter().filter_map(|i| Some((i, sample(&report.frames[i])?))).unzip();
         let predicted = predictions(model, &judge, &samples, Streams::Both)?;
         let triangles = &dataset.setup.triangles;
         let errors = samples.iter().zip(&predicted).map(|(sample, predicted)| -> Vec<f64> {
@@ -87,7 +90,8 @@ impl Gallery {
             let caption = format!("{rank}{} {}: {distance:.1} mm, {normal:.1}°", frame.clip, frame.frame);
             frames.push((caption, views));
         }
-        Ok(Self { top, frames, mean: mean(dataset, report, top)? })
+        let repaired = repair::pictures(model, &judge, report, triangles, &VIEWS, sample)?;
+        Ok(Self { top, frames, mean: mean(dataset, report, top)?, repaired })
     }
 
     /// The pictures with their captions and scale.
@@ -109,6 +113,7 @@ impl Gallery {
                     @for view in views { @for picture in view { (picture) } }
                 }
             }
+            (repair::markup(&self.repaired))
         }
     }
 }

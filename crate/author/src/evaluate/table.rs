@@ -7,11 +7,12 @@ impl std::fmt::Display for Report {
         let (frames, clips) = (self.frames.len(), self.clips.len());
         let left_out = format!("{} poses were left out by the simulation", self.rejected);
         writeln!(f, "{} on {}: {frames} unseen frames of {clips} clips; {left_out}", self.garment, self.character)?;
-        let heads = ["E_dist mm", "95 %", "E_norm deg", "95 %", "inside %", "depth mm", "stretch %", "m/s²"];
+        let heads =
+            ["E_dist mm", "95 %", "E_norm deg", "95 %", "inside %", "depth mm", "cross %", "stretch %", "m/s²", "slow"];
         writeln!(
             f,
-            "{:<16}{:>16}{:>8}{:>16}{:>8}{:>10}{:>10}{:>11}{:>8}",
-            "", heads[0], heads[1], heads[2], heads[3], heads[4], heads[5], heads[6], heads[7]
+            "{:<16}{:>16}{:>8}{:>16}{:>8}{:>10}{:>10}{:>9}{:>11}{:>8}{:>8}",
+            "", heads[0], heads[1], heads[2], heads[3], heads[4], heads[5], heads[6], heads[7], heads[8], heads[9]
         )?;
         let rows = [
             ("network", Some(&self.network)),
@@ -26,9 +27,11 @@ impl std::fmt::Display for Report {
             let (distance, normal) = (pair(errors.distance, 1e3), pair(errors.normal, 1.0));
             let tails = (errors.distance.p95 * 1e3, errors.normal.p95);
             let (inside, depth, stretch) = (errors.penetrating * 100.0, errors.depth * 1e3, errors.stretch * 100.0);
-            let jitter = errors.jitter.map_or("-".to_owned(), |jitter| format!("{jitter:.2}"));
+            let [jitter, slow] = [errors.jitter, errors.slow_jitter]
+                .map(|jitter| jitter.map_or("-".to_owned(), |jitter| format!("{jitter:.2}")));
             write!(f, "{name:<16}{distance:>16}{:>8.2}{normal:>16}{:>8.2}", tails.0, tails.1)?;
-            writeln!(f, "{inside:>10.2}{depth:>10.1}{stretch:>11.2}{jitter:>8}")?;
+            let crossing = errors.crossing * 100.0;
+            writeln!(f, "{inside:>10.3}{depth:>10.1}{crossing:>9.3}{stretch:>11.2}{jitter:>8}{slow:>8}")?;
         }
         let (share, size, scaled) = (self.ratio * 100.0, self.size, self.network.scaled);
         write!(

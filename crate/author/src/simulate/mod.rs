@@ -30,6 +30,6 @@ pub use distance::BodyDistance;
 pub use hull::hull;
 pub use material::{GRAVITY, Material};
 pub use outcome::{Outcome, Status};
-pub use path::{body_frame, path, to_body_frame};
+pub use path::{between, body_frame, path, to_body_frame};
 pub use settings::Settings;
 pub use simulator::Simulator;

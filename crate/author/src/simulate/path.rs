@@ -31,15 +31,25 @@ pub fn path(character: &Character, pose: &Pose, steps: usize) -> Vec<Pose> {
     let mut poses = vec![start];
     for step in 1..steps {
         let t = step as f64 / steps as f64;
-        let mut world: Pose = Vec::with_capacity(from.len());
-        for (joint, (a, b)) in character.joints.iter().zip(from.iter().zip(&to)) {
-            let between = interpolate(a, b, t);
-            world.push(joint.parent.map_or(between, |parent| world[parent] * between));
-        }
-        poses.push(to_body_frame(character, &world));
+        poses.push(to_body_frame(character, &mix(character, &from, &to, t)));
     }
     poses.push(end);
     poses
+}
+
+/// The pose a share `t` of the way from `a` to `b`, interpolated as on a [`path`].
+pub fn between(character: &Character, a: &Pose, b: &Pose, t: f64) -> Pose {
+    mix(character, &local(character, a), &local(character, b), t)
+}
+
+/// World transforms from those relative to the parents.
+fn mix(character: &Character, from: &Pose, to: &Pose, t: f64) -> Pose {
+    let mut world: Pose = Vec::with_capacity(from.len());
+    for (joint, (a, b)) in character.joints.iter().zip(from.iter().zip(to)) {
+        let between = interpolate(a, b, t);
+        world.push(joint.parent.map_or(between, |parent| world[parent] * between));
+    }
+    world
 }
 
 /// Joint transforms relative to their parents.

@@ -2,6 +2,7 @@
 //! The closest body point is searched by walking over the body's surface from a few seeds kept with the model, so that it depends on
 //! nothing but the pose, and cloth does not find a part of the body that it never came near. Twin: shaders/collide.wgsl.
 
+use fearless_simd::{Level, Simd, dispatch};
 use glam::Vec3;
 
 /// Distance at which cloth is kept from the body, metres.
@@ -26,7 +27,12 @@ pub struct Posed<'a> {
 }
 
 /// positions [n, 3], seeds [n, width] (body vertices) -> push [n, 3], the displacement to the gap; zero where there is room.
-pub fn collide(positions: &[f32], body: &Posed, seeds: &[u32], push: &mut [f32]) {
+pub fn collide(level: Level, positions: &[f32], body: &Posed, seeds: &[u32], push: &mut [f32]) {
+    dispatch!(level, simd => kernel(simd, positions, body, seeds, push));
+}
+
+#[inline(always)]
+fn kernel<S: Simd>(_: S, positions: &[f32], body: &Posed, seeds: &[u32], push: &mut [f32]) {
     let positions = positions.as_chunks::<3>().0;
     let seeds = seeds.chunks_exact(seeds.len() / positions.len().max(1));
     for ((point, seeds), push) in positions.iter().zip(seeds).zip(push.as_chunks_mut::<3>().0) {
@@ -34,18 +40,35 @@ pub fn collide(positions: &[f32], body: &Posed, seeds: &[u32], push: &mut [f32])
     }
 }
 
+/// Where a walk ended.
+struct Place {
+    vertex: u32,
+    /// Squared distance to it.
+    squared: f32,
+    /// Highest corner of the triangles around it, along its normal; infinite where that is not known.
+    top: f32,
+}
+
 impl Posed<'_> {
+    #[inline(always)]
     fn position(&self, vertex: u32) -> Vec3 {
         Vec3::from_array(self.positions[vertex as usize])
     }
 
+    #[inline(always)]
+    fn normal(&self, vertex: u32) -> Vec3 {
+        Vec3::from_array(self.normals[vertex as usize])
+    }
+
     /// The other two corners of the triangles around a vertex.
+    #[inline(always)]
     fn fan(&self, vertex: u32) -> &[[u32; 2]] {
         &self.fans[self.offsets[vertex as usize] as usize..self.offsets[vertex as usize + 1] as usize]
     }
 
     /// The displacement that brings `point` to the gap. The last of the seeds lies on another part of the body than the first, where
     /// the cloth comes near one, as in an armpit: then the nearer part decides.
+    #[inline(always)]
     fn push(&self, point: Vec3, seeds: &[u32]) -> Vec3 {
         let (own, other) = seeds.split_at((seeds.len() - 1).max(1));
         let found = self.search(point, own);
@@ -59,12 +82,14 @@ impl Posed<'_> {
     }
 
     /// Squared distance to the body below the seeds, and the displacement to its gap; zero where there is room.
+    #[inline(always)]
     fn search(&self, point: Vec3, seeds: &[u32]) -> (f32, Vec3) {
-        let (vertex, squared) = self.walk(point, seeds);
-        if self.is_clear(point, vertex) {
-            return (squared, Vec3::ZERO);
+        let place = self.walk(point, seeds);
+        let height = (point - self.position(place.vertex)).dot(self.normal(place.vertex));
+        if height - place.top > GAP {
+            return (place.squared, Vec3::ZERO);
         }
-        let Some((foot, normal)) = self.closest(point, vertex) else { return (f32::INFINITY, Vec3::ZERO) };
+        let Some((foot, normal)) = self.closest(point, place.vertex) else { return (f32::INFINITY, Vec3::ZERO) };
         let (height, distance) = ((point - foot).dot(normal), point.distance(foot));
         let beside = distance > GAP && height.abs() < STEEPEST * distance;
         if beside || height < -DEPTH {
@@ -75,30 +100,30 @@ impl Posed<'_> {
         (distance * distance, normal * (GAP - height).max(0.0))
     }
 
-    /// The nearest vertex downhill from the nearest seed, and the squared distance to it.
-    fn walk(&self, point: Vec3, seeds: &[u32]) -> (u32, f32) {
+    /// The nearest vertex downhill from the nearest seed.
+    #[inline(always)]
+    fn walk(&self, point: Vec3, seeds: &[u32]) -> Place {
         // Without branches: which one is nearer cannot be foretold.
-        let nearer = |best: (u32, f32), vertex: u32| {
-            let squared = point.distance_squared(self.position(vertex));
+        let nearer = |best: (u32, f32), vertex: u32, position: Vec3| {
+            let squared = point.distance_squared(position);
             (if squared < best.1 { vertex } else { best.0 }, squared.min(best.1))
         };
-        let mut best = seeds.iter().fold((seeds[0], f32::INFINITY), |best, seed| nearer(best, *seed));
+        let start = (seeds[0], f32::INFINITY);
+        let mut best = seeds.iter().fold(start, |best, seed| nearer(best, *seed, self.position(*seed)));
         for _ in 0..STEPS {
-            let next = self.fan(best.0).iter().fold(best, |best, corners| nearer(best, corners[0]));
+            let (at, up) = (self.position(best.0), self.normal(best.0));
+            let (mut next, mut top) = (best, 0.0_f32);
+            for corners in self.fan(best.0) {
+                let position = self.position(corners[0]);
+                top = top.max((position - at).dot(up));
+                next = nearer(next, corners[0], position);
+            }
             if next.0 == best.0 {
-                break;
+                return Place { vertex: best.0, squared: best.1, top };
             }
             best = next;
         }
-        best
-    }
-
-    /// Whether the triangles around a vertex lie below the gap under `point`: below their highest corner, along the vertex's normal.
-    fn is_clear(&self, point: Vec3, vertex: u32) -> bool {
-        let (up, foot) = (Vec3::from_array(self.normals[vertex as usize]), self.position(vertex));
-        let height = |at: Vec3| (at - foot).dot(up);
-        let top = self.fan(vertex).iter().fold(0.0, |top: f32, corners| top.max(height(self.position(corners[0]))));
-        height(point) - top > GAP
+        Place { vertex: best.0, squared: best.1, top: f32::INFINITY }
     }
 
     /// The closest point of the triangles around a vertex, and the interpolated unit normal there.
@@ -117,7 +142,7 @@ impl Posed<'_> {
             }
         }
         let (foot, shares, [b, c]) = found?;
-        let [a, b, c] = [vertex, *b, *c].map(|corner| Vec3::from_array(self.normals[corner as usize]));
+        let [a, b, c] = [vertex, *b, *c].map(|corner| self.normal(corner));
         // Opposite normals: a body folded onto itself has no outside there.
         Some((foot, (a * shares.x + b * shares.y + c * shares.z).try_normalize()?))
     }

@@ -136,7 +136,7 @@ impl Device for Cpu {
             offsets: &body.fans.offsets,
             fans: body.fans.corners.as_chunks().0,
         };
-        collide::collide(positions, &posed, &body.seeds, push);
+        collide::collide(self.level, positions, &posed, &body.seeds, push);
     }
 
     fn spread(&mut self, graph: &Graph<Vec<u32>>, push: &Vec<f32>, before: &Vec<f32>, after: &mut Vec<f32>) {
