@@ -4,25 +4,34 @@ fn squared(way: vec3<f32>) -> f32 {
     return dot(way, way);
 }
 
-// Share of the way from a point along an edge to where it is closest.
-fn along(offset: vec3<f32>, way: vec3<f32>) -> f32 {
-    return select(0.0, clamp(dot(offset, way) / squared(way), 0.0, 1.0), squared(way) > 0.0);
+// Share of the way along an edge to where a point is closest.
+fn along(way: f32, length_squared: f32) -> f32 {
+    return select(0.0, clamp(way / length_squared, 0.0, 1.0), length_squared > 0.0);
 }
 
-// Barycentric coordinates of the point of triangle abc closest to the point: by areas inside, else on the nearest edge.
-fn closest(point: vec3<f32>, a: vec3<f32>, b: vec3<f32>, c: vec3<f32>) -> vec3<f32> {
-    let across = cross(b - a, c - a);
-    if (squared(across) > 0.0) {
-        let v = dot(cross(point - a, c - a), across) / squared(across);
-        let w = dot(cross(b - a, point - a), across) / squared(across);
-        if (v >= 0.0 && w >= 0.0 && v + w <= 1.0) {
-            return vec3(1.0 - v - w, v, w);
-        }
+// The point of triangle abc closest to p, from the ways from a to p, b and c: squared distance from it less that from a, and its shares
+// of b and c. Above the triangle, else on the nearest edge.
+fn closest(ap: vec3<f32>, ab: vec3<f32>, ac: vec3<f32>) -> vec3<f32> {
+    let bb = dot(ab, ab);
+    let bc = dot(ab, ac);
+    let cc = dot(ac, ac);
+    let bp = dot(ab, ap);
+    let cp = dot(ac, ap);
+    let area = bb * cc - bc * bc;
+    let b = cc * bp - bc * cp;
+    let c = bb * cp - bc * bp;
+    if (area > params.sliver * bb * cc && b >= 0.0 && c >= 0.0 && b + c <= area) {
+        let v = b / area;
+        let w = c / area;
+        return vec3(v * (v * bb + 2.0 * (w * bc - bp)) + w * (w * cc - 2.0 * cp), v, w);
     }
-    let s = along(point - a, b - a);
-    let t = along(point - a, c - a);
-    let u = along(point - b, c - b);
-    let on = vec3(squared(point - mix(a, b, s)), squared(point - mix(a, c, t)), squared(point - mix(b, c, u)));
-    let ab_or_ac = select(vec3(1.0 - s, s, 0.0), vec3(1.0 - t, 0.0, t), on.y < on.x);
-    return select(ab_or_ac, vec3(0.0, 1.0 - u, u), on.z < min(on.x, on.y));
+    let s = along(bp, bb);
+    let t = along(cp, cc);
+    let u = along(cp - bp - bc + bb, bb - 2.0 * bc + cc);
+    let r = 1.0 - u;
+    let on_ab = vec3(s * (s * bb - 2.0 * bp), s, 0.0);
+    let on_ac = vec3(t * (t * cc - 2.0 * cp), 0.0, t);
+    let on_bc = vec3(r * (r * bb + 2.0 * (u * bc - bp)) + u * (u * cc - 2.0 * cp), r, u);
+    let at_a = select(on_ab, on_ac, on_ac.x < on_ab.x);
+    return select(at_a, on_bc, on_bc.x < at_a.x);
 }

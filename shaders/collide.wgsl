@@ -9,6 +9,7 @@ struct Params {
     gap: f32,
     depth: f32,
     steepest: f32,
+    sliver: f32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
@@ -72,27 +73,27 @@ fn push_from(point: vec3<f32>, place: Place) -> vec4<f32> {
     if (dot(point - position(vertex), normal(vertex)) - place.top > params.gap) {
         return vec4(0.0, 0.0, 0.0, place.squared);
     }
-    var least = 3.4e38;
+    let a = position(vertex);
+    var best = vec3(3.4e38, 0.0, 0.0);
     var foot = vec3(0.0);
-    var steep = vec3(0.0);
+    var corners = vec2(vertex);
     for (var k = offsets[vertex]; k < offsets[vertex + 1u]; k++) {
-        let corners = vec3(vertex, fans[k]);
-        let a = position(corners.x);
-        let b = position(corners.y);
-        let c = position(corners.z);
-        let shares = closest(point, a, b, c);
-        let on = a * shares.x + b * shares.y + c * shares.z;
-        if (squared(point - on) < least) {
-            least = squared(point - on);
-            foot = on;
-            steep = normal(corners.x) * shares.x + normal(corners.y) * shares.y + normal(corners.z) * shares.z;
+        let ab = position(fans[k].x) - a;
+        let ac = position(fans[k].y) - a;
+        let spot = closest(point - a, ab, ac);
+        if (spot.x < best.x) {
+            best = spot;
+            foot = a + ab * spot.y + ac * spot.z;
+            corners = fans[k];
         }
     }
+    let steep = normal(vertex) * (1.0 - best.y - best.z) + normal(corners.x) * best.y + normal(corners.y) * best.z;
+    let least = squared(point - foot);
     let length = sqrt(squared(steep));
     let up = steep / max(length, 1e-30);
     let along_up = dot(point - foot, up);
     let beside = least > params.gap * params.gap && abs(along_up) < params.steepest * sqrt(least);
-    let found = length > 1e-3 && !beside && along_up >= -params.depth;
+    let found = best.x < 3.4e38 && length > 1e-3 && !beside && along_up >= -params.depth;
     let height = select(along_up, sqrt(least), along_up > 0.0);
     return select(vec4(0.0, 0.0, 0.0, 3.4e38), vec4(up * max(params.gap - height, 0.0), least), found);
 }

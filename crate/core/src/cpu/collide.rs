@@ -14,6 +14,9 @@ pub const STEPS: usize = 12;
 /// Least cosine between the way to the closest point and the normal there; less is beside the border of an open body.
 pub const STEEPEST: f32 = 0.5;
 
+/// A triangle whose angle at a corner has a smaller squared sine is taken for its edges.
+pub const SLIVER: f32 = 1e-6;
+
 /// The posed body: positions and unit normals [b, 3], and the triangles around each vertex.
 pub struct Posed<'a> {
     /// Positions, metres [b, 3].
@@ -127,47 +130,49 @@ impl Posed<'_> {
     }
 
     /// The closest point of the triangles around a vertex, and the interpolated unit normal there.
+    #[inline(always)]
     fn closest(&self, point: Vec3, vertex: u32) -> Option<(Vec3, Vec3)> {
-        let mut best = f32::INFINITY;
-        let mut found = None;
         let a = self.position(vertex);
+        let mut best = Spot { squared: f32::INFINITY, b: 0.0, c: 0.0 };
+        let mut found = None;
         for corners in self.fan(vertex) {
-            let [b, c] = corners.map(|corner| self.position(corner));
-            let shares = closest_on_triangle(point, a, b, c);
-            let foot = a * shares.x + b * shares.y + c * shares.z;
-            let squared = point.distance_squared(foot);
-            if squared < best {
-                best = squared;
-                found = Some((foot, shares, corners));
+            let [ab, ac] = corners.map(|corner| self.position(corner) - a);
+            let spot = closest_on_triangle(point - a, ab, ac);
+            if spot.squared < best.squared {
+                best = spot;
+                found = Some((corners, ab * best.b + ac * best.c));
             }
         }
-        let (foot, shares, [b, c]) = found?;
-        let [a, b, c] = [vertex, *b, *c].map(|corner| self.normal(corner));
+        let ([b, c], way) = found?;
+        let sum = self.normal(vertex) * (1.0 - best.b - best.c) + self.normal(*b) * best.b + self.normal(*c) * best.c;
         // Opposite normals: a body folded onto itself has no outside there.
-        Some((foot, (a * shares.x + b * shares.y + c * shares.z).try_normalize()?))
+        Some((a + way, sum.try_normalize()?))
     }
 }
 
-/// Barycentric coordinates of the point of triangle abc closest to `point`: by areas inside, else on the nearest edge.
-fn closest_on_triangle(point: Vec3, a: Vec3, b: Vec3, c: Vec3) -> Vec3 {
-    let (ab, ac, ap) = (b - a, c - a, point - a);
-    let normal = ab.cross(ac);
-    let area = normal.length_squared();
-    if area > 0.0 {
-        let (v, w) = (ap.cross(ac).dot(normal) / area, ab.cross(ap).dot(normal) / area);
-        if v >= 0.0 && w >= 0.0 && v + w <= 1.0 {
-            return Vec3::new(1.0 - v - w, v, w);
-        }
+/// A point of a triangle abc: its shares of b and c.
+#[derive(Clone, Copy, Debug)]
+struct Spot {
+    /// Squared distance from it, less that from a.
+    squared: f32,
+    b: f32,
+    c: f32,
+}
+
+/// The point of triangle abc closest to p, from the ways from a to p, b and c: above the triangle, else on the nearest edge.
+#[inline(always)]
+fn closest_on_triangle(ap: Vec3, ab: Vec3, ac: Vec3) -> Spot {
+    let (bb, bc, cc, bp, cp) = (ab.dot(ab), ab.dot(ac), ac.dot(ac), ab.dot(ap), ac.dot(ap));
+    let spot = |b: f32, c: f32| Spot { squared: b * (b * bb + 2.0 * (c * bc - bp)) + c * (c * cc - 2.0 * cp), b, c };
+    let (area, b, c) = (bb * cc - bc * bc, cc * bp - bc * cp, bb * cp - bc * bp);
+    if area > SLIVER * bb * cc && b >= 0.0 && c >= 0.0 && b + c <= area {
+        return spot(b / area, c / area);
     }
-    let along = |from: Vec3, way: Vec3| {
-        let squared = way.length_squared();
-        if squared > 0.0 { ((point - from).dot(way) / squared).clamp(0.0, 1.0) } else { 0.0 }
-    };
-    let (s, t, u) = (along(a, ab), along(a, ac), along(b, c - b));
-    let edges = [Vec3::new(1.0 - s, s, 0.0), Vec3::new(1.0 - t, 0.0, t), Vec3::new(0.0, 1.0 - u, u)];
-    let squared = |shares: &Vec3| point.distance_squared(a * shares.x + b * shares.y + c * shares.z);
-    let nearer = |best: Vec3, edge: Vec3| if squared(&edge) < squared(&best) { edge } else { best };
-    edges.into_iter().fold(edges[0], nearer)
+    let along = |way: f32, squared: f32| if squared > 0.0 { (way / squared).clamp(0.0, 1.0) } else { 0.0 };
+    let across = along(cp - bp - bc + bb, bb - 2.0 * bc + cc);
+    let nearer = |best: Spot, other: Spot| if other.squared < best.squared { other } else { best };
+    let at_a = nearer(spot(along(bp, bb), 0.0), spot(0.0, along(cp, cc)));
+    nearer(at_a, spot(1.0 - across, across))
 }
 
 #[cfg(test)]
@@ -178,13 +183,19 @@ mod tests {
     fn closest_points_of_a_triangle_are_inside_on_edges_and_at_corners() {
         let (a, b, c) = (Vec3::ZERO, Vec3::X, Vec3::Y);
         let on = |point: Vec3| {
-            let shares = closest_on_triangle(point, a, b, c);
-            a * shares.x + b * shares.y + c * shares.z
+            let spot = closest_on_triangle(point - a, b - a, c - a);
+            assert!(
+                (spot.squared - (Vec3::new(spot.b, spot.c, 0.0) - point).length_squared() + point.length_squared())
+                    .abs()
+                    < 1e-5
+            );
+            Vec3::new(spot.b, spot.c, 0.0)
         };
         assert_eq!(on(Vec3::new(0.25, 0.25, 3.0)), Vec3::new(0.25, 0.25, 0.0));
         assert_eq!(on(Vec3::new(0.5, -2.0, 1.0)), Vec3::new(0.5, 0.0, 0.0));
         assert_eq!(on(Vec3::new(1.0, 1.0, -1.0)), Vec3::new(0.5, 0.5, 0.0));
         assert_eq!(on(Vec3::new(3.0, -1.0, 0.0)), b);
-        assert_eq!(closest_on_triangle(Vec3::ONE, a, a, a), Vec3::X);
+        let point = closest_on_triangle(Vec3::ONE, Vec3::ZERO, Vec3::ZERO);
+        assert!(point.b.is_finite() && point.c.is_finite() && point.squared == 0.0, "{point:?}");
     }
 }
