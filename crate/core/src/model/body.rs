@@ -20,7 +20,7 @@ pub struct Body<B, I> {
     pub triangles: Vec<u32>,
     /// The triangles around each body vertex.
     pub fans: Fans<I>,
-    /// Body vertices near which each cloth vertex was in training [n, s].
+    /// Body vertices near which each cloth vertex was in training [n, s]; the last on the other side of a crease, or the first again.
     pub seeds: I,
 }
 
