@@ -83,8 +83,8 @@ fn blend() {
     for weights in [6, 5 * 6] {
         // The rest is constant to the gradient by design: network.md §6.
         check_operation(&[weights, 5 * 3 * 6, 15], 1, 15, |tape, ids, y| {
-            let mut residual = tape.buffer(&[0.0; 15]);
-            tape.blend(&ids[0], &ids[1], &ids[2], &mut residual, y);
+            let (confidence, mut residual) = (tape.buffer(&[1.0]), tape.buffer(&[0.0; 15]));
+            tape.blend(&ids[0], &ids[1], &ids[2], &confidence, &mut residual, y);
         });
     }
 }
