@@ -50,7 +50,6 @@ pub trait Device {
     fn linear(&mut self, x: &Self::Buffer, layer: &Linear<Self::Buffer>, activation: Activation, y: &mut Self::Buffer);
     /// weights [count] (one for all) or [n, count], basis [n, 3, count], confidence [1] -> residual [n, 3] = `Σ_j w_j B_j`,
     /// template [n, 3] = rest + confidence · residual.
-    #[expect(clippy::too_many_arguments, reason = "an operation takes its operands plainly")]
     fn blend(
         &mut self,
         weights: &Self::Buffer,
