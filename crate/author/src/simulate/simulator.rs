@@ -44,7 +44,7 @@ impl Simulator {
         let rest = garment.mesh.positions.clone();
         settings.check(rest.len())?;
         let cloth = Cloth::new(&garment.mesh, &warp(garment), &material, settings.shape)?;
-        let collider = Collider::new(&hull(character, &garment.mesh, SKIN)?, &garment.mesh, settings.reach)?;
+        let collider = Collider::new(&hull(character, SKIN)?, &garment.mesh, settings.reach)?;
         let body = BodyDistance::new(character, &garment.mesh)?;
         let layout = Arc::new(Layout::new(&cloth, &[])?);
         let attached = attach(&collider, &rest, &settings.attached);
