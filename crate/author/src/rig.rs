@@ -114,9 +114,9 @@ impl Character {
         })
     }
 
-    /// Whether a joint's mesh is a rigid obstacle, which moves against the cloth and is not dressed: its name says so.
+    /// Whether a joint is an obstacle.
     pub fn is_obstacle(&self, joint: usize) -> bool {
-        self.joints.get(joint).is_some_and(|joint| joint.name.to_lowercase().contains("obstacle"))
+        self.joints.get(joint).is_some_and(|joint| is_obstacle(&joint.name))
     }
 
     /// The character with as much of its body as the joints that `kept` wants move most, without what is drawn.
@@ -137,6 +137,11 @@ impl Character {
     pub fn joint(&self, name: &str) -> Option<usize> {
         self.joints.iter().position(|joint| joint.name == name)
     }
+}
+
+/// Whether the mesh of a joint of that name is a rigid obstacle, which moves against the cloth and is not dressed.
+pub fn is_obstacle(name: &str) -> bool {
+    name.to_lowercase().contains("obstacle")
 }
 
 /// The joint that moves a vertex most, the first of equals; 0 for a vertex without weights.
