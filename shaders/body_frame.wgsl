@@ -13,7 +13,7 @@ struct Params {
 @group(0) @binding(1) var<storage, read> world: array<vec4<f32>>;
 // Rows of B_j⁻¹ [3 J].
 @group(0) @binding(2) var<storage, read> inverse_bind: array<vec4<f32>>;
-// Mean of γ [3 J], then its standard deviation [3 J].
+// Mean of γ, its standard deviation, the least and the greatest seen in training [4, 3 J]; where the joints are [J].
 @group(0) @binding(3) var<storage, read> standard: array<vec4<f32>>;
 // Rows of N·A_j, then of N⁻¹ [3 (J + 1)].
 @group(0) @binding(4) var<storage, read_write> transforms: array<vec4<f32>>;
@@ -39,6 +39,16 @@ fn heading() -> vec2<f32> {
     return normalize(twist / size);
 }
 
+// Row `at` of the transforms, or the nearest one seen: by its linear part and the joint's position.
+fn seen(row: vec4<f32>, at: u32, j: u32) -> vec4<f32> {
+    let step = 3u * params.joints;
+    let origin = standard[4u * step + j].xyz;
+    let placed = vec4(row.xyz, row.w + dot(row.xyz, origin));
+    let near = clamp(placed, standard[2u * step + at], standard[3u * step + at]);
+    // Among the poses seen the row itself: rounded the other way round it would not come back.
+    return select(vec4(near.xyz, near.w - dot(near.xyz, origin)), row, all(near == placed));
+}
+
 @compute @workgroup_size(64)
 fn body_frame(@builtin(global_invocation_id) id: vec3<u32>) {
     let j = id.x;
@@ -49,6 +59,7 @@ fn body_frame(@builtin(global_invocation_id) id: vec3<u32>) {
     let root = 3u * params.root;
     let hip = vec3(world[root].w, world[root + 1u].w, world[root + 2u].w);
     let at = 3u * j;
+    let step = 3u * params.joints;
     if (j == params.joints) {
         transforms[at] = vec4(turn.x, 0.0, turn.y, hip.x);
         transforms[at + 1u] = vec4(0.0, 1.0, 0.0, hip.y);
@@ -62,6 +73,6 @@ fn body_frame(@builtin(global_invocation_id) id: vec3<u32>) {
     for (var r = 0u; r < 3u; r++) {
         let row = times_bind(rows[r], j);
         transforms[at + r] = row;
-        vector[at + r] = (row - standard[at + r]) / standard[3u * params.joints + at + r];
+        vector[at + r] = (seen(row, at + r, j) - standard[at + r]) / standard[step + at + r];
     }
 }

@@ -119,9 +119,9 @@ shaders! {
     ATTEND: Attend, "attend" + ["attend.edge", "gate"], [Read Read Read Read Read Write], [1, 1];
     /// The same without barriers, and with room for what is attended to.
     ATTEND_VERTEX: Attend, "attend.vertex" + ["attend.edge", "gate"], [Read Read Read Read Read Write Write], [64, 1];
-    /// Σ_j w_j B_j: weights, basis, rest -> residual, result.
-    BLEND: Blend, "blend" + [], [Read Read Read Write Write], [64, 1];
-    /// Joints, inverse bind, mean and deviation -> transforms, pose vector.
+    /// Σ_j w_j B_j: weights, basis, rest, confidence -> residual, result.
+    BLEND: Blend, "blend" + [], [Read Read Read Read Write Write], [64, 1];
+    /// Joints, inverse bind, standard -> transforms, pose vector.
     BODY_FRAME: BodyFrame, "body_frame" + [], [Read Read Read Write Write], [64, 1];
     /// Body, its normals, offsets, fans, seeds, positions -> push.
     COLLIDE: Collide, "collide" + ["collide.triangle"], [Read Read Read Read Read Read Write], [64, 1];

@@ -21,11 +21,22 @@ export function readTensors(file: string): { tensors: Record<string, Tensor>; me
   return { tensors, metadata };
 }
 
+/** A file's bytes, with these tensors besides. */
+export function addTensors(bytes: Uint8Array, tensors: Record<string, Tensor>): Buffer {
+  const file = Buffer.from(bytes);
+  const length = Number(file.readBigUInt64LE());
+  const header = JSON.parse(file.toString('utf8', 8, 8 + length)) as Record<string, unknown>;
+  return container(header, [file.subarray(8 + length)], tensors);
+}
+
 /** The bytes of a file that holds these tensors. */
 export function writeTensors(tensors: Record<string, Tensor>): Buffer {
-  let end = 0;
-  const header: Record<string, unknown> = {};
-  const parts: Buffer[] = [];
+  return container({}, [], tensors);
+}
+
+/** A file of a header and its data, continued by `tensors`. */
+function container(header: Record<string, unknown>, parts: Buffer[], tensors: Record<string, Tensor>): Buffer {
+  let end = parts.reduce((total, part) => total + part.length, 0);
   for (const [name, { shape, values }] of Object.entries(tensors)) {
     header[name] = { dtype: 'F32', shape, data_offsets: [end, (end += values.byteLength)] };
     parts.push(Buffer.from(values.buffer, values.byteOffset, values.byteLength));

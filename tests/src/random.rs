@@ -1,7 +1,7 @@
 //! Models of awkward sizes with random weights, and random poses for them.
 
 use ctsn_core::model::{HostModel, Layer, Linear, Reference, Sizes, Skin, Surface};
-use ctsn_core::pose::{Frame, Rig};
+use ctsn_core::pose::{Frame, Range, Rig};
 use ctsn_core::topology::Graph;
 use fastrand::Rng;
 
@@ -79,12 +79,17 @@ pub fn pose(rng: &mut Rng, joints: usize) -> Vec<f32> {
     (0..joints).flat_map(|_| transform(rng)).collect()
 }
 
+/// A rig whose range leaves some numbers of a random pose outside.
 fn rig(rng: &mut Rng, joints: usize) -> Rig {
+    let min = numbers(rng, 12 * joints, 0.5).iter().map(|value| value - 1.5).collect();
+    let max = numbers(rng, 12 * joints, 0.5).iter().map(|value| value + 1.5).collect();
+    let inverse_bind: Vec<_> = (0..joints).map(|_| transform(rng)).collect();
     Rig {
         frame: if joints.is_multiple_of(2) { Frame::Hip } else { Frame::HipYaw },
         root: joints / 2,
         joints: (0..joints).map(|j| format!("joint {j}")).collect(),
-        inverse_bind: (0..joints).map(|_| transform(rng)).collect(),
+        range: Some(Range::new(&inverse_bind, min, max)),
+        inverse_bind,
         mean: numbers(rng, 12 * joints, 0.1),
         std: numbers(rng, 12 * joints, 0.2).iter().map(|value| value + 1.0).collect(),
     }

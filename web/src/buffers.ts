@@ -32,6 +32,11 @@ export class ClothBuffers {
     return this.#predictor === undefined;
   }
 
+  /** Of the prediction last submitted: `Frame.confidence`. */
+  get confidence(): number {
+    return this.#predictor?.confidence() ?? 1;
+  }
+
   /** @internal Submits a prediction for the pose that `cpu` holds; false if that failed, and then `cpu` knows why. */
   predict(cpu: Predictor, streams: Streams): boolean {
     return this.#predictor!.predict(cpu, streams);

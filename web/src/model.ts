@@ -29,6 +29,11 @@ export interface Frame {
   readonly positions: Float32Array;
   /** World unit normals of the cloth vertices [3·n]. */
   readonly normals: Float32Array;
+  /**
+   * How much of the network's folds the cloth shows: 1 in poses like those of the training, less the further the pose leaves
+   * them, 0 where the cloth is skinned plainly. Always 1 where the model file does not say what poses it has seen.
+   */
+  readonly confidence: number;
 }
 
 /** What is drawn of the cloth: vertices split at seams, so that textures have edges where the cloth has none. */
@@ -63,7 +68,7 @@ export class ClothModel extends EventTarget {
 
   #predictor: Predictor | undefined;
   readonly #memory: WebAssembly.Memory;
-  readonly #frame = { output: 'arrays' as const, positions: new Float32Array(), normals: new Float32Array() };
+  readonly #frame = { output: 'arrays' as const, positions: new Float32Array(), normals: new Float32Array(), confidence: 1 };
   readonly #switch: Switch;
   #pose = new Float32Array();
 
@@ -161,6 +166,7 @@ export class ClothModel extends EventTarget {
 
   #predict(predictor: Predictor, streams: Streams): Frame {
     if (!predictor.predict(streams)) throw fromCore(predictor.take_failure());
+    this.#frame.confidence = predictor.confidence();
     return this.#frame;
   }
 
@@ -174,16 +180,17 @@ export class ClothModel extends EventTarget {
   /** Waits for what was just submitted; if the GPU fails meanwhile, the CPU answers for the same pose. */
   async #read(buffers: ClothBuffers, streams: Streams): Promise<Frame> {
     const pose = this.#pose.slice();
+    const { confidence } = buffers;
     try {
       const [positions, normals] = await buffers.read();
-      return { output: 'arrays', positions, normals };
+      return { output: 'arrays', positions, normals, confidence };
     } catch (error) {
       const predictor = this.#alive();
       // Buffers freed meanwhile, by a change of the backend, are no fault of the device.
       if (!buffers.disposed) this.#fail(error);
       this.#pose.set(pose);
-      const { positions, normals } = this.#predict(predictor, streams);
-      return { output: 'arrays', positions: positions.slice(), normals: normals.slice() };
+      const { positions, normals, confidence } = this.#predict(predictor, streams);
+      return { output: 'arrays', positions: positions.slice(), normals: normals.slice(), confidence };
     }
   }
 

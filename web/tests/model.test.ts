@@ -1,6 +1,6 @@
 import { expect, expectTypeOf, test } from 'vitest';
 import { loadModel, type ClothBuffers, type Frame } from 'ctsn';
-import { difference } from '../../tests/browser/safetensors.js';
+import { addTensors, difference } from '../../tests/browser/safetensors.js';
 import { bytesOf, loadGolden, readGolden } from './golden.js';
 
 test.each(['tiny', 'small', 'small_f16', 'isolated'])('golden model %s, through the public API', async (name) => {
@@ -35,6 +35,23 @@ test('the streams differ: both, skeleton only, none', async () => {
   expect(difference(skeleton!, none!)).toBeGreaterThan(0.01);
   expect(model.predictCloth(poses[0]!).positions).toEqual(both);
   model.dispose();
+});
+
+test('confidence falls where a pose leaves what the model has seen, on cloths too', async () => {
+  const { model: plain, poses } = await loadGolden('small');
+  const shape = [12 * plain.joints.length];
+  const bound = (value: number) => ({ shape, values: new Float32Array(shape[0]!).fill(value) });
+  const model = await loadModel(addTensors(bytesOf('small'), { 'pose.min': bound(-10), 'pose.max': bound(10) }));
+  const frame = model.predictCloth(poses[0]!);
+  expect(frame.confidence).toBe(1);
+  expect(frame.positions).toEqual(plain.predictCloth(poses[0]!).positions);
+  const wild = poses[0]!.slice();
+  for (let joint = 0; joint < model.joints.length; joint++) if (joint !== model.rootIndex) wild[16 * joint + 12]! += 100;
+  expect(model.predictCloth(wild)).toBe(frame);
+  expect(frame.confidence).toBe(0);
+  expect(plain.predictCloth(wild).confidence, 'a model that does not say what it has seen').toBe(1);
+  model.dispose();
+  plain.dispose();
 });
 
 test('the sizes a page needs', async () => {

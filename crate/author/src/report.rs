@@ -229,6 +229,9 @@ impl std::fmt::Display for NoiseFloor {
             f,
             "  noise floor  {pairs} poses with every joint turned by {degrees}°, {left_out} left out; mean, 95 %, greatest"
         )?;
+        if *pairs == 0 {
+            return write!(f, "               no pair was kept: nothing to compare");
+        }
         let row = |name: &str, of: &Difference| {
             let list = |values: [f64; 3]| values.map(|value| format!("{value:.2}")).join(", ");
             format!("  {name:<13}{} mm; normals {}°", list(of.distance), list(of.normal))

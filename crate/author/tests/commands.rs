@@ -3,9 +3,10 @@
 mod made;
 mod training;
 
+use ctsn_author::rig::Garment;
 use ctsn_core::file::{Tensor, Tensors};
 use glam::DVec3;
-use made::{Folder, edit, spoil, write_blanket, write_character, write_garment};
+use made::{Folder, change_garment, edit, spoil, write_blanket, write_character, write_garment};
 use serde_json::Value;
 
 const TINY: &[u8] = include_bytes!("../../../tests/golden/tiny.safetensors");
@@ -142,6 +143,38 @@ fn garments_that_are_none_are_refused() {
         write_garment(&folder, away);
         refuses(&["garment", "body"]);
     }
+}
+
+#[test]
+fn a_garment_of_one_s_own_is_checked() {
+    let folder = Folder::new();
+    write_character(&folder, |_| ());
+    let check = "garment character.glb --check garment.glb";
+    let changed = |change: fn(&mut Garment)| {
+        write_garment(&folder, DVec3::ZERO);
+        change_garment(&folder, change);
+    };
+    changed(|_| ());
+    let said = folder.accepts(check);
+    assert!(said.contains(" 0 pins; fit to be simulated, 0 warnings"), "{said}");
+    changed(|garment| garment.pins = vec![3, 5, 8]);
+    let said = folder.accepts(check);
+    assert!(said.contains(" 3 pins; fit to be simulated"), "written and read as _PIN: {said}");
+    // A face of a side, not of a rim.
+    changed(|garment| {
+        let positions = garment.mesh.positions.clone();
+        let inner = |corners: &[u32; 3]| corners.iter().all(|corner| positions[*corner as usize].y.abs() < 0.1);
+        let face = garment.mesh.triangles.iter().position(inner).expect("a face");
+        garment.mesh.triangles.remove(face);
+    });
+    let said = folder.accepts(check);
+    assert!(said.contains("hole of 3 edges") && said.contains("1 warnings"), "{said}");
+    changed(|garment| garment.mesh.triangles.iter_mut().for_each(|corners| corners.swap(1, 2)));
+    folder.refuses(check, &["garment.glb", "inside out"]);
+    changed(|garment| garment.mesh.triangles.push(garment.mesh.triangles[7]));
+    folder.refuses(check, &["garment.glb", "duplicated"]);
+    changed(|garment| garment.mesh.positions.iter_mut().for_each(|position| *position *= 0.01));
+    folder.refuses(check, &["garment.glb", "scale", "100 times too small"]);
 }
 
 #[test]

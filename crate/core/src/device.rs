@@ -48,13 +48,15 @@ pub trait Device {
     );
     /// x [rows, inputs] -> y [rows, outputs], `y = act(W x + b)` row by row.
     fn linear(&mut self, x: &Self::Buffer, layer: &Linear<Self::Buffer>, activation: Activation, y: &mut Self::Buffer);
-    /// weights [count] (one for all) or [n, count], basis [n, 3, count] -> residual [n, 3] = `Σ_j w_j B_j`,
-    /// template [n, 3] = rest + residual.
+    /// weights [count] (one for all) or [n, count], basis [n, 3, count], confidence [1] -> residual [n, 3] = `Σ_j w_j B_j`,
+    /// template [n, 3] = rest + confidence · residual.
+    #[expect(clippy::too_many_arguments, reason = "an operation takes its operands plainly")]
     fn blend(
         &mut self,
         weights: &Self::Buffer,
         basis: &Self::Buffer,
         rest: &Self::Buffer,
+        confidence: &Self::Buffer,
         residual: &mut Self::Buffer,
         template: &mut Self::Buffer,
     );

@@ -2,6 +2,7 @@
 //!
 //! `Model` (weights) + `BodyFrame` (pose) -> `network::forward` over a `Device` -> positions. `Predictor` ties them for the CPU.
 
+mod confidence;
 pub mod cpu;
 pub mod device;
 mod error;
@@ -12,6 +13,7 @@ pub mod pose;
 mod predictor;
 pub mod topology;
 
+pub use confidence::Confidence;
 pub use error::{Error, Result};
 pub use network::Streams;
 pub use predictor::Predictor;

@@ -2,6 +2,7 @@
 
 use crate::cpu::body_frame::body_frame;
 use crate::{Error, Result};
+use glam::{Mat3, Vec3};
 
 /// 3×4 transform, row-major.
 pub type Transform = [f32; 12];
@@ -30,6 +31,68 @@ pub struct Rig {
     pub mean: Vec<f32>,
     /// Standard deviation of the pose vector [12J].
     pub std: Vec<f32>,
+    /// Which poses were seen in training, where the file says so.
+    pub range: Option<Range>,
+}
+
+/// The poses seen in training: least and greatest numbers of the transforms `N·A_j`, by rows of the linear part and the joint's own
+/// position. Beyond them the pose vector is clamped. (A transform's translation is where it carries the origin, which may be far from
+/// the joint: clamped apart from the rotation it tore the joint away.)
+#[derive(Clone, Debug, PartialEq)]
+pub struct Range {
+    /// Least [J, 3, 4].
+    pub min: Vec<f32>,
+    /// Greatest [J, 3, 4].
+    pub max: Vec<f32>,
+    /// Where the joints are in canonical space, metres [J].
+    pub origins: Vec<Vec3>,
+}
+
+impl Range {
+    /// A range [J, 3, 4] of joints with these inverse binds.
+    pub fn new(inverse_bind: &[Transform], min: Vec<f32>, max: Vec<f32>) -> Self {
+        Self { min, max, origins: inverse_bind.iter().map(origin).collect() }
+    }
+
+    /// The range of `frames`' transforms; `None` of none.
+    pub fn of(inverse_bind: &[Transform], frames: &[BodyFrame]) -> Option<Self> {
+        let count = 12 * inverse_bind.len();
+        let (min, max) = (vec![f32::INFINITY; count], vec![f32::NEG_INFINITY; count]);
+        let mut range = Self::new(inverse_bind, min, max);
+        for frame in frames {
+            for (row, numbers) in frame.transforms[..count].as_chunks::<4>().0.iter().enumerate() {
+                for (e, number) in (4 * row..).zip(range.placed(row, *numbers)) {
+                    range.min[e] = range.min[e].min(number);
+                    range.max[e] = range.max[e].max(number);
+                }
+            }
+        }
+        (!frames.is_empty()).then_some(range)
+    }
+
+    /// Row `row` of the transforms, or the nearest one seen.
+    pub fn nearest(&self, row: usize, numbers: [f32; 4]) -> [f32; 4] {
+        let placed = self.placed(row, numbers);
+        let near: [f32; 4] = std::array::from_fn(|e| placed[e].max(self.min[4 * row + e]).min(self.max[4 * row + e]));
+        if near == placed {
+            return numbers;
+        }
+        let [x, y, z, place] = near;
+        [x, y, z, place - Vec3::new(x, y, z).dot(self.origins[row / 3])]
+    }
+
+    /// Linear part of a row and the joint's position in place of the translation.
+    fn placed(&self, row: usize, [x, y, z, offset]: [f32; 4]) -> [f32; 4] {
+        [x, y, z, offset + Vec3::new(x, y, z).dot(self.origins[row / 3])]
+    }
+}
+
+/// Where the joint of an inverse bind is in canonical space; the origin where it cannot be inverted.
+fn origin(bind: &Transform) -> Vec3 {
+    let row = |row: usize| Vec3::from_slice(&bind[4 * row..]);
+    let inverse = Mat3::from_cols(row(0), row(1), row(2)).transpose().inverse();
+    let origin = inverse * -Vec3::new(bind[3], bind[7], bind[11]);
+    if origin.is_finite() { origin } else { Vec3::ZERO }
 }
 
 /// One pose as the devices see it.

@@ -1,5 +1,6 @@
 //! A model ready to predict on the CPU: load once, then one call per frame without any allocation.
 
+use crate::confidence::Confidence;
 use crate::cpu::{Cpu, Level};
 use crate::device::Device;
 use crate::model::{HostModel, Sizes, Surface};
@@ -13,6 +14,7 @@ pub struct Predictor {
     device: Cpu,
     model: Arc<HostModel>,
     activations: Activations<Vec<f32>>,
+    confidence: Option<Confidence>,
 }
 
 impl Predictor {
@@ -24,8 +26,10 @@ impl Predictor {
     /// A model at a chosen SIMD level.
     pub fn from_model(model: HostModel, level: Level) -> Self {
         let mut device = Cpu::with_level(level);
-        let activations = Activations::new(&model, |_, length| device.buffer(&vec![0.0; length]));
-        Self { device, model: Arc::new(model), activations }
+        let mut activations = Activations::new(&model, |_, length| device.buffer(&vec![0.0; length]));
+        activations.confidence[0] = 1.0;
+        let confidence = Confidence::new(&model);
+        Self { device, model: Arc::new(model), activations, confidence }
     }
 
     /// The model, to be put on another device too.
@@ -83,6 +87,9 @@ impl Predictor {
     /// Weights and poses may be finite and yet overflow together; what comes out is checked, so that NaN never leaves.
     fn run(&mut self, streams: Streams) -> Result<()> {
         let a = &mut self.activations;
+        if let Some(confidence) = &mut self.confidence {
+            a.confidence[0] = confidence.of(&self.model.rig, &a.joints);
+        }
         frame(&mut self.device, &self.model, streams, a);
         match a.positions.iter().position(|value| !value.is_finite()) {
             Some(element) => {
@@ -90,6 +97,12 @@ impl Predictor {
             }
             None => Ok(()),
         }
+    }
+
+    /// What the residuals were worth in the last pose: 1 among the poses seen in training, 0 far from them, where the cloth is skinned
+    /// plainly; always 1 where the model does not say what it has seen.
+    pub fn confidence(&self) -> f32 {
+        self.activations.confidence[0]
     }
 
     /// Predicted positions [n, 3], world, metres.

@@ -4,10 +4,10 @@ use crate::cost::{Stage, stages};
 use crate::recorder::Recorder;
 use crate::recording::{Dispatch, Room};
 use crate::{Gpu, Result};
-use ctsn_core::Streams;
 use ctsn_core::model::{HostModel, Sizes};
 use ctsn_core::network::{Activations, frame};
 use ctsn_core::pose::Rig;
+use ctsn_core::{Confidence, Streams};
 use std::cell::RefCell;
 use std::sync::Arc;
 
@@ -19,12 +19,15 @@ pub(crate) struct Inner {
     pub gpu: Gpu,
     pub sizes: Sizes,
     pub rig: Rig,
+    /// What each predictor reckons its poses' confidence with.
+    pub trust: Option<Confidence>,
     pub constants: Vec<wgpu::Buffer>,
     pub rooms: Vec<Room>,
     /// Frames by streams: both, skeleton, none.
     pub frames: [Vec<Dispatch>; 3],
     /// Rooms of what is written and read from outside.
     pub joints: usize,
+    pub confidence: usize,
     pub positions: usize,
     pub normals: usize,
     /// Positions and normals of what is drawn: the cloth's own where the model has no surface.
@@ -78,12 +81,27 @@ fn record(gpu: &Gpu, model: &HostModel) -> Result<Model> {
         gpu.pipeline(dispatch.shader, dispatch.room);
     }
     let room = |id| recorder.room(id).unwrap_or_else(|| unreachable!("every frame writes it"));
-    let (joints, positions, normals) = (room(a.joints), room(a.positions), room(a.normals));
+    let (joints, confidence) = (room(a.joints), room(a.confidence));
+    let (positions, normals) = (room(a.positions), room(a.normals));
     let drawn = a.drawn.as_ref().map_or([positions, normals], |drawn| [room(drawn.positions), room(drawn.normals)]);
     let results = a.stages().into_iter().map(|(name, id)| (name, room(*id))).collect();
     let Recorder { constants, rooms, .. } = recorder;
-    let (gpu, sizes, rig) = (gpu.clone(), model.sizes, model.rig.clone());
-    Ok(Model(Arc::new(Inner { gpu, sizes, rig, constants, rooms, frames, joints, positions, normals, drawn, results })))
+    let (gpu, sizes, rig, trust) = (gpu.clone(), model.sizes, model.rig.clone(), Confidence::new(model));
+    Ok(Model(Arc::new(Inner {
+        gpu,
+        sizes,
+        rig,
+        trust,
+        constants,
+        rooms,
+        frames,
+        joints,
+        confidence,
+        positions,
+        normals,
+        drawn,
+        results,
+    })))
 }
 
 impl Inner {

@@ -1,6 +1,6 @@
 //! Constants as the shaders read them: rows padded with zeros to whole vec4, and what neighbouring invocations read side by side.
 
-use ctsn_core::pose::Rig;
+use ctsn_core::pose::{Range, Rig};
 
 /// Numbers in whole vec4.
 pub fn whole(numbers: usize) -> usize {
@@ -58,9 +58,15 @@ pub fn layer(edge: &[f32], gate: &[f32], norm_weight: &[f32], norm_bias: &[f32])
     (0..features).flat_map(feature).collect()
 }
 
-/// Mean of the pose vector, then its standard deviation.
+/// Mean of the pose vector, its standard deviation, then the range: bounds, and where the joints are. Boundless for a rig without.
 pub fn standard(rig: &Rig) -> Vec<f32> {
-    [rig.mean.as_slice(), &rig.std].concat()
+    let boundless = || {
+        let bound = |bound| vec![bound; rig.mean.len()];
+        Range::new(&rig.inverse_bind, bound(f32::MIN), bound(f32::MAX))
+    };
+    let Range { min, max, origins } = rig.range.clone().unwrap_or_else(boundless);
+    let origins = origins.iter().flat_map(|origin| origin.extend(0.0).to_array()).collect();
+    [rig.mean.clone(), rig.std.clone(), min, max, origins].concat()
 }
 
 /// Triangles [t, 3] -> first corner of each of `n` vertices [n + 1], and the corners of the triangles around it, in their order.

@@ -4,13 +4,15 @@ use crate::model::Model;
 use crate::read::Reader;
 use crate::recording::{Dispatch, Operand};
 use crate::{Error, Gpu, Result};
-use ctsn_core::Streams;
+use ctsn_core::{Confidence, Streams};
 use wgpu::BufferUsages as Usage;
 
 /// One cloth: a [`Model`] with the intermediate results of its own. Dropping it frees them.
 pub struct Predictor {
     pub(crate) model: Model,
     pose: Vec<f32>,
+    trust: Option<Confidence>,
+    confidence: f32,
     pub(crate) buffers: Vec<wgpu::Buffer>,
     /// Frames by streams: both, skeleton, none.
     frames: [Vec<Step>; 3],
@@ -69,7 +71,15 @@ impl Predictor {
         let step = |dispatch: &Dispatch| Step::new(gpu, dispatch, &inner.constants, &buffers);
         let frames = [0, 1, 2].map(|streams| inner.frames[streams].iter().map(step).collect());
         let pose = vec![0.0; 12 * inner.sizes.joints];
-        Self { model: model.clone(), pose, buffers, frames, reader: Reader::default() }
+        Self {
+            model: model.clone(),
+            pose,
+            trust: inner.trust.clone(),
+            confidence: 1.0,
+            buffers,
+            frames,
+            reader: Reader::default(),
+        }
     }
 
     /// The model.
@@ -95,9 +105,10 @@ impl Predictor {
         self.submit(streams)
     }
 
-    fn submit(&self, streams: Streams) -> Result<()> {
+    fn submit(&mut self, streams: Streams) -> Result<()> {
         let gpu = self.model.gpu();
         gpu.check()?;
+        self.confidence = self.trust.as_mut().map_or(1.0, |trust| trust.of(self.model.rig(), &self.pose));
         self.write_pose();
         let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
@@ -108,8 +119,9 @@ impl Predictor {
     }
 
     pub(crate) fn write_pose(&self) {
-        let joints = &self.buffers[self.model.0.joints];
-        self.model.gpu().queue().write_buffer(joints, 0, bytemuck::cast_slice(&self.pose));
+        let (inner, queue) = (&self.model.0, self.model.gpu().queue());
+        queue.write_buffer(&self.buffers[inner.joints], 0, bytemuck::cast_slice(&self.pose));
+        queue.write_buffer(&self.buffers[inner.confidence], 0, bytemuck::bytes_of(&self.confidence));
     }
 
     pub(crate) fn steps(&self, streams: Streams) -> &[Step] {
@@ -118,6 +130,11 @@ impl Predictor {
             Streams::Skeleton => 1,
             Streams::None => 2,
         }]
+    }
+
+    /// What the residuals were worth in the last pose, 0 to 1, as [`ctsn_core::Predictor::confidence`].
+    pub fn confidence(&self) -> f32 {
+        self.confidence
     }
 
     /// Predicted positions [n, 3], world, metres, not padded: fit to be a vertex or storage buffer of the page.

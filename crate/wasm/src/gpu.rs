@@ -59,6 +59,11 @@ impl GpuPredictor {
         cpu.failure.is_none()
     }
 
+    /// As [`Predictor::confidence`], of the pose last submitted.
+    pub fn confidence(&self) -> f32 {
+        self.0.confidence()
+    }
+
     /// The last prediction, read back: positions and normals, each [3·n].
     #[wasm_bindgen(unchecked_return_type = "Promise<[Float32Array, Float32Array]>")]
     pub fn read(&self) -> Promise {

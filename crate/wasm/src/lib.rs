@@ -126,6 +126,11 @@ impl Predictor {
         self.failure.is_none()
     }
 
+    /// What the network's residuals were worth in the last pose: 1 among the poses seen in training, 0 far from them.
+    pub fn confidence(&self) -> f32 {
+        self.inner.confidence()
+    }
+
     /// Why the last prediction failed.
     pub fn take_failure(&mut self) -> Option<js_sys::Error> {
         self.failure.take().map(|error| to_js(&error))

@@ -42,6 +42,7 @@ export class Cloth<M extends Material | Material[] = Material> extends Mesh<Buff
   #asked = 0;
   #shown = 0;
   #skipped = false;
+  #confidence = 1;
   #failure: unknown;
   /** Distance of the cloth from the joints, metres; measured when only the GPU knows the positions. */
   #reach: number | undefined;
@@ -76,6 +77,11 @@ export class Cloth<M extends Material | Material[] = Material> extends Mesh<Buff
   /** Whether the renderer draws from the buffers of the prediction. The attributes' arrays are stale then: no ray hits the cloth. */
   get zeroCopy(): boolean {
     return this.#zeroCopy.drawn;
+  }
+
+  /** `Frame.confidence` of the pose that is shown: below 1 the pose is unlike those of the training. */
+  get confidence(): number {
+    return this.#confidence;
   }
 
   /** Predicts the cloth for the bones as they stand now. On the CPU it allocates nothing. */
@@ -118,6 +124,7 @@ export class Cloth<M extends Material | Material[] = Material> extends Mesh<Buff
     if (answer.output === 'gpu') {
       boundPose(this.#pose, this.#reach, this.geometry);
       this.#zeroCopy.draw(answer);
+      this.#confidence = answer.confidence;
     } else {
       this.#zeroCopy.ready();
       this.#show(answer);
@@ -149,6 +156,7 @@ export class Cloth<M extends Material | Material[] = Material> extends Mesh<Buff
   /** Shows a frame; earlier ones that are still on their way are void. */
   #show(frame: Frame, turn = ++this.#asked): void {
     this.#shown = turn;
+    this.#confidence = frame.confidence;
     drawFrame(this.geometry, frame, this.model.surface?.vertex);
   }
 

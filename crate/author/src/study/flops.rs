@@ -42,8 +42,8 @@ impl Device for Count {
 
     fn body_frame(&mut self, _: &Rig, _: &usize, _: &mut usize, _: &mut usize) {}
 
-    fn blend(&mut self, _: &usize, basis: &usize, rest: &usize, _: &mut usize, _: &mut usize) {
-        self.0 += 2 * basis + rest;
+    fn blend(&mut self, _: &usize, basis: &usize, rest: &usize, _: &usize, _: &mut usize, _: &mut usize) {
+        self.0 += 2 * basis + 2 * rest;
     }
 
     fn skin(&mut self, rest: &usize, skin: &Skin<usize, usize>, _: &usize, space: Space, _: &mut usize) {

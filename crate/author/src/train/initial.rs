@@ -8,7 +8,7 @@ use crate::{Error, Result};
 use ctsn_core::cpu::{Level, skin};
 use ctsn_core::device::Space;
 use ctsn_core::model::{HostModel, Layer, Linear, Reference, Sizes, Skin};
-use ctsn_core::pose::{BodyFrame, Frame, Rig};
+use ctsn_core::pose::{BodyFrame, Frame, Range, Rig};
 use ctsn_core::topology::Graph;
 
 /// Sizes of the network that are free to choose.
@@ -86,6 +86,7 @@ fn rig(setup: &Setup) -> Result<Rig> {
         inverse_bind: inverse_bind.ok_or_else(wrong)?,
         mean: vec![0.0; 12 * joints],
         std: vec![1.0; 12 * joints],
+        range: None,
     })
 }
 
@@ -102,6 +103,7 @@ fn frames(setup: &Setup, samples: &[&Sample]) -> Result<Vec<BodyFrame>> {
 
 fn standardised(setup: &Setup, frames: &[BodyFrame]) -> Result<Rig> {
     let mut rig = rig(setup)?;
+    rig.range = Range::of(&rig.inverse_bind, frames);
     for i in 0..rig.mean.len() {
         let (mean, std) = moments(frames.iter().map(|frame| f64::from(frame.vector[i])));
         rig.mean[i] = mean;

@@ -210,7 +210,8 @@ impl Device for Tape {
         // Samples come in the body frame, so there is nothing to remember.
     }
 
-    fn blend(&mut self, weights: &Id, basis: &Id, rest: &Id, residual: &mut Id, template: &mut Id) {
+    fn blend(&mut self, weights: &Id, basis: &Id, rest: &Id, _confidence: &Id, residual: &mut Id, template: &mut Id) {
+        // Samples are what the range is made of: their confidence is 1.
         let (rest, residual, template) = (*rest, *residual, *template);
         let operation = Operation::Blend { weights: *weights, basis: *basis, rest, residual, template };
         self.record(&[*weights, *basis], template, operation);

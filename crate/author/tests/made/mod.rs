@@ -132,6 +132,15 @@ fn write_part(folder: &Folder, mesh: &Mesh, away: DVec3, kept: impl Fn([DVec3; 3
     gltf::write_garment(&folder.path("garment.glb"), &garment).expect("a garment written");
 }
 
+/// Rewrites `garment.glb` as `change` leaves it.
+pub fn change_garment(folder: &Folder, change: impl FnOnce(&mut Garment)) {
+    let path = folder.path("garment.glb");
+    let (mut garment, _) = gltf::read_garment(&path, 1.0).expect("a garment");
+    change(&mut garment);
+    garment.surface.triangles.clone_from(&garment.mesh.triangles);
+    gltf::write_garment(&path, &garment).expect("a garment written");
+}
+
 /// Rewrites a GLB of the folder with its JSON and binary chunk changed.
 pub fn edit(path: &Path, change: impl FnOnce(&mut Value, &mut [u8])) {
     let bytes = std::fs::read(path).expect("a GLB");

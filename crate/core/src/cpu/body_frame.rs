@@ -21,8 +21,11 @@ pub fn body_frame(rig: &Rig, joints: &[f32], transforms: &mut [f32], vector: &mu
         *transform = multiply(&into, &skinning(j)).map(|value| value as f32);
     }
     last.copy_from_slice(&back.map(|value| value as f32));
-    for (i, value) in vector.iter_mut().enumerate() {
-        *value = (transforms[i] - rig.mean[i]) / rig.std[i];
+    for (row, (vector, numbers)) in
+        vector.as_chunks_mut::<4>().0.iter_mut().zip(transforms.as_chunks::<4>().0).enumerate()
+    {
+        let seen = rig.range.as_ref().map_or(*numbers, |range| range.nearest(row, *numbers));
+        *vector = std::array::from_fn(|e| (seen[e] - rig.mean[4 * row + e]) / rig.std[4 * row + e]);
     }
 }
 

@@ -76,10 +76,11 @@ impl Device for Cpu {
         weights: &Vec<f32>,
         basis: &Vec<f32>,
         rest: &Vec<f32>,
+        confidence: &Vec<f32>,
         residual: &mut Vec<f32>,
         template: &mut Vec<f32>,
     ) {
-        blend::blend(self.level, weights, basis, rest, residual, template);
+        blend::blend(self.level, weights, basis, rest, confidence[0], residual, template);
     }
 
     fn skin(

@@ -2,7 +2,7 @@
 
 use super::{Body, HostModel, Layer, Linear, Model, Reference, Sizes, Skin, Surface};
 use crate::file::Tensors;
-use crate::pose::{Frame, Rig};
+use crate::pose::{Frame, Range, Rig, Transform};
 use crate::topology::Graph;
 use crate::{Error, Result};
 use miniserde::{Deserialize, Serialize, json};
@@ -102,7 +102,24 @@ fn rig(file: &Tensors, description: Description) -> Result<Rig> {
     let mean = file.f32("pose.mean", &[Some(12 * joints)])?.0;
     let std = file.f32("pose.std", &[Some(12 * joints)])?.0;
     positive("pose.std", &std)?;
-    Ok(Rig { frame, root: description.root, joints: description.joints, inverse_bind, mean, std })
+    let range = range(file, &inverse_bind)?;
+    Ok(Rig { frame, root: description.root, joints: description.joints, inverse_bind, mean, std, range })
+}
+
+/// The poses seen in training; `None` where the file does not tell.
+fn range(file: &Tensors, inverse_bind: &[Transform]) -> Result<Option<Range>> {
+    if !["pose.min", "pose.max"].iter().any(|name| file.tensors.contains_key(*name)) {
+        return Ok(None);
+    }
+    let read = |name| Ok(file.f32(name, &[Some(12 * inverse_bind.len())])?.0);
+    let (min, max) = (read("pose.min")?, read("pose.max")?);
+    match min.iter().zip(&max).position(|(min, max)| min > max) {
+        Some(element) => Err(Error::NotModel(format!(
+            "pose.min is above pose.max at element {element}: {} and {}",
+            min[element], max[element]
+        ))),
+        None => Ok(Some(Range::new(inverse_bind, min, max))),
+    }
 }
 
 fn reference(file: &Tensors, n: usize, joints: usize, edge_scale: f32) -> Result<Reference<Vec<f32>, Vec<u32>>> {

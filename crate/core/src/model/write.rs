@@ -88,6 +88,10 @@ impl HostModel {
         }
         writer.fixed("pose.mean", &[12 * joints], &self.rig.mean);
         writer.fixed("pose.std", &[12 * joints], &self.rig.std);
+        if let Some(range) = &self.rig.range {
+            writer.fixed("pose.min", &[12 * joints], &range.min);
+            writer.fixed("pose.max", &[12 * joints], &range.max);
+        }
     }
 
     /// The gathered reference vertices, each distinct one once.

@@ -12,5 +12,5 @@ pub(super) fn skeleton<D: Device>(device: &mut D, model: &DeviceModel<D>, a: &mu
         device.linear(x, layer, if last { Activation::None } else { Activation::Relu }, &mut after[0]);
     }
     let embedding = a.embedding.last().unwrap_or(&a.pose);
-    device.blend(embedding, &model.skeleton, &model.rest, &mut a.skeleton, &mut a.coarse);
+    device.blend(embedding, &model.skeleton, &model.rest, &a.confidence, &mut a.skeleton, &mut a.coarse);
 }

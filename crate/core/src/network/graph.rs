@@ -21,5 +21,5 @@ pub(super) fn mesh<D: Device>(device: &mut D, model: &DeviceModel<D>, a: &mut Ac
         device.linear(h, layer, Activation::Relu, &mut after[0]);
     }
     let weights = a.vertex.last().unwrap_or(&a.nodes);
-    device.blend(weights, &model.mesh, &a.coarse, &mut a.mesh, &mut a.template);
+    device.blend(weights, &model.mesh, &a.coarse, &a.confidence, &mut a.mesh, &mut a.template);
 }

@@ -26,6 +26,8 @@ pub type DeviceModel<D> = Model<<D as Device>::Buffer, <D as Device>::Indices>;
 pub struct Activations<B> {
     /// World joint transforms `G_j` [J, 3, 4].
     pub joints: B,
+    /// What the residuals are worth in this pose, 0 to 1 [1].
+    pub confidence: B,
     /// Pose vector γ [12J].
     pub pose: B,
     /// `N·A_j`, then `N⁻¹` [J + 1, 3, 4].
@@ -89,6 +91,7 @@ impl<B> Activations<B> {
         };
         Self {
             joints: buffer("body_frame", 12 * joints),
+            confidence: buffer("body_frame", 1),
             pose: buffer("body_frame", 12 * joints),
             body_frame: buffer("body_frame", 12 * (joints + 1)),
             embedding: model.embedding.iter().map(|layer| buffer("embedding", layer.outputs)).collect(),
@@ -124,7 +127,7 @@ impl<B> Activations<B> {
     }
 }
 
-/// The whole frame: joints (written before) -> positions in the world, their normals, and what is drawn.
+/// The whole frame: joints and confidence (written before) -> positions in the world, their normals, and what is drawn.
 pub fn frame<D: Device>(device: &mut D, model: &DeviceModel<D>, streams: Streams, a: &mut Activations<D::Buffer>) {
     device.body_frame(&model.rig, &a.joints, &mut a.body_frame, &mut a.pose);
     forward(device, model, streams, Space::World, a);
@@ -137,7 +140,7 @@ pub fn frame<D: Device>(device: &mut D, model: &DeviceModel<D>, streams: Streams
     }
 }
 
-/// Pose and body frame (written before) -> template and positions in `space`.
+/// Confidence, pose and body frame (written before) -> template and positions in `space`.
 pub fn forward<D: Device>(
     device: &mut D,
     model: &DeviceModel<D>,

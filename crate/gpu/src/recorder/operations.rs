@@ -68,7 +68,7 @@ impl Device for Recorder<'_> {
         self.dispatch(shader, params, &operands, [outputs4, rows], *y, 2 * rows * inputs * outputs);
     }
 
-    fn blend(&mut self, weights: &Id, basis: &Id, rest: &Id, residual: &mut Id, template: &mut Id) {
+    fn blend(&mut self, weights: &Id, basis: &Id, rest: &Id, confidence: &Id, residual: &mut Id, template: &mut Id) {
         let numbers = self.length(*residual);
         let count = self.length(*basis) / numbers;
         let shared = self.length(*weights) == count;
@@ -76,6 +76,7 @@ impl Device for Recorder<'_> {
             self.input(*weights),
             self.pack(("basis", basis.0), |this| pack::basis(this.values(*basis), count)),
             self.plain(*rest),
+            self.output(*confidence, 1, 4),
             self.output(*residual, 3, 3),
             self.output(*template, 3, 3),
         ];

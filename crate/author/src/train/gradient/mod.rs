@@ -33,7 +33,7 @@ pub(super) fn run(tape: &Tape, operation: &Operation, shared: &Shared, lane: &mu
         Operation::Blend { weights, basis, rest, residual, template } => lane.write(*residual, |lane, residual| {
             lane.write(*template, |lane, template| {
                 let value = |id| lane.value(shared, id);
-                cpu::blend::blend(level, value(*weights), value(*basis), value(*rest), residual, template);
+                cpu::blend::blend(level, value(*weights), value(*basis), value(*rest), 1.0, residual, template);
             });
         }),
         Operation::Add { rest, residual, total } => lane.write(*total, |lane, total| {
