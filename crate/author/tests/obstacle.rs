@@ -5,7 +5,7 @@ use ctsn_author::character::character;
 use ctsn_author::dataset::{Description, Record, Sample, Setup};
 use ctsn_author::garment::{Cut, Kind, shell};
 use ctsn_author::rig::{Character, Garment, Joint, Pose, joints, numbers, row_major, vertices};
-use ctsn_author::simulate::{BodyDistance, to_body_frame};
+use ctsn_author::simulate::{BodyDistance, body_frame};
 use ctsn_author::train::{Architecture, initial};
 use ctsn_core::cpu::Level;
 use ctsn_core::model::{HostModel, Skin};
@@ -37,9 +37,7 @@ fn setup(character: &Character, garment: &Garment) -> Setup {
 
 /// The pose with the cloth where it is in the canonical pose.
 fn sample(character: &Character, garment: &Garment, pose: &Pose) -> Sample {
-    let hung = to_body_frame(character, &character.canonical_pose())[character.root].inverse();
-    let frame = DAffine3::from_translation(-character.canonical_pose()[character.root].translation);
-    assert!(hung.translation.length() < 1e-9, "the canonical hip is upright");
+    let frame = body_frame(character, &character.canonical_pose());
     let truth: Vec<DVec3> = garment.mesh.positions.iter().map(|p| frame.transform_point3(*p)).collect();
     Sample { record: Record::default(), joints: joints(pose), truth: numbers(&truth) }
 }
@@ -53,7 +51,8 @@ fn model(character: &Character, garment: &Garment, poses: &[Pose]) -> HostModel 
     let mut model = initial(&setup, &samples, small, 1).expect("a model");
     let n = model.sizes.vertices;
     model.skin = Skin { joints: vec![character.root as u32; n], weights: vec![1.0; n], width: 1 };
-    (model.skeleton.fill(0.0), model.mesh.fill(0.0));
+    model.skeleton.fill(0.0);
+    model.mesh.fill(0.0);
     model.body = Some(body(&setup, &samples).expect("a body"));
     model
 }
@@ -62,7 +61,7 @@ fn model(character: &Character, garment: &Garment, poses: &[Pose]) -> HostModel 
 fn inside(character: &Character, garment: &Garment, model: &HostModel, pose: &Pose) -> [(usize, f64); 2] {
     let obstacle = character.part(|joint| character.is_obstacle(joint));
     let distance = BodyDistance::new(&obstacle, &garment.mesh).expect("a body");
-    let into = to_body_frame(character, pose)[character.root] * pose[character.root].inverse();
+    let into = body_frame(character, pose);
     [HostModel { body: None, ..model.clone() }, model.clone()].map(|model| {
         let mut predictor = Predictor::from_model(model, Level::new());
         predictor.predict_row_major(&joints(pose), Streams::Both).expect("a prediction");

@@ -10,7 +10,7 @@ use glam::{DAffine3, DVec3};
 /// The scene of a rail and a sphere, the sphere moved away in the canonical pose.
 fn scene(away: DVec3) -> Character {
     let mut scene = character::character("sphere").unwrap();
-    scene.joints[1].inverse_bind = scene.joints[1].inverse_bind * DAffine3::from_translation(-away);
+    scene.joints[1].inverse_bind *= DAffine3::from_translation(-away);
     for (place, weights) in scene.body.positions.iter_mut().zip(&scene.weights) {
         if weights[0].0 == 1 {
             *place += away;
