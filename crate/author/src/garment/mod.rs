@@ -32,6 +32,8 @@ use pattern::{Pattern, pattern};
 use solid::Solid;
 
 #[cfg(test)]
+mod obstacle_test;
+#[cfg(test)]
 mod test;
 
 pub use check::{Findings, check, load};
