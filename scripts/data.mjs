@@ -1,5 +1,5 @@
 // npm run data: simulates the project's pairs of character and garment into out/pairs, with a report and a contact sheet of each.
-//   npm run data                           all eight pairs, 64 poses each
+//   npm run data                           all ten pairs, 64 poses each
 //   npm run data -- andy-tshirt fox-cape   only these
 //   npm run data -- --full                 three of them at full size, 1,250 poses each
 //   npm run data -- --on figure.glb --kind tshirt   a character of your own, with its own clips
@@ -19,6 +19,8 @@ const PAIRS = {
   'dolphin-vest': {},
   'cat-coat': {},
   'fox-cape': { full: true },
+  'sphere-sheet': {},
+  'box-sheet': {},
 };
 /** Poses of a dataset, evenly spread over the frames of its clips at `RATE` a second. A full one goes into the same folder. */
 const POSES = { small: 64, full: 1250 };

@@ -27,14 +27,12 @@ const MISSED: f64 = 0.004;
 
 /// The body for the cloth of `setup`, as `samples` wear it.
 pub fn body(setup: &Setup, samples: &[&Sample]) -> Result<Body<Vec<f32>, Vec<u32>>> {
-    let triangles = setup.triangles.as_chunks::<3>().0.to_vec();
-    let cloth = Mesh { positions: vertices(&setup.template), triangles };
-    let skin = hull(&setup.character()?, &cloth, VERTICES)?;
+    let skin = hull(&setup.character()?, VERTICES)?;
     let step = samples.len().div_ceil(POSES).max(1);
     let poses: Vec<&&Sample> = samples.iter().step_by(step).collect();
     let nearest = |sample: &&&Sample| nearest(&skin, sample);
     let seen: Vec<Vec<Option<u32>>> = poses.par_iter().map(nearest).collect::<Result<_>>()?;
-    let mut visits = vec![BTreeMap::new(); cloth.positions.len()];
+    let mut visits = vec![BTreeMap::new(); setup.template.len() / 3];
     for (vertex, place) in seen.iter().flat_map(|seen| seen.iter().enumerate()) {
         place.iter().for_each(|place| *visits[vertex].entry(*place).or_insert(0) += 1);
     }

@@ -2,6 +2,7 @@
 //! Units: metres, right-handed, +Y up (glTF). All of it f64; the network's f32 begins at the dataset.
 
 use glam::{DAffine3, DVec2, DVec3};
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Joint world transforms `G_j` of one pose, one per joint of the [`Character`], in metres.
 pub type Pose = Vec<DAffine3>;
@@ -113,10 +114,40 @@ impl Character {
         })
     }
 
+    /// Whether a joint is an obstacle.
+    pub fn is_obstacle(&self, joint: usize) -> bool {
+        self.joints.get(joint).is_some_and(|joint| is_obstacle(&joint.name))
+    }
+
+    /// The character with as much of its body as the joints that `kept` wants move most, without what is drawn.
+    pub fn part(&self, kept: impl Fn(usize) -> bool) -> Character {
+        let owned = |vertex: u32| kept(strongest(&self.weights[vertex as usize]));
+        let triangles = || self.body.triangles.iter().filter(|triangle| owned(triangle[0]));
+        let used: BTreeSet<u32> = triangles().flatten().copied().collect();
+        let place: BTreeMap<u32, u32> = used.iter().zip(0..).map(|(old, new)| (*old, new)).collect();
+        let body = Mesh {
+            positions: used.iter().map(|old| self.body.positions[*old as usize]).collect(),
+            triangles: triangles().map(|triangle| triangle.map(|old| place[&old])).collect(),
+        };
+        let weights = used.iter().map(|old| self.weights[*old as usize].clone()).collect();
+        Character { body, weights, surface: Surface::default(), ..self.clone() }
+    }
+
     /// Index of the joint of that name.
     pub fn joint(&self, name: &str) -> Option<usize> {
         self.joints.iter().position(|joint| joint.name == name)
     }
+}
+
+/// Whether the mesh of a joint of that name is a rigid obstacle, which moves against the cloth and is not dressed.
+pub fn is_obstacle(name: &str) -> bool {
+    name.to_lowercase().contains("obstacle")
+}
+
+/// The joint that moves a vertex most, the first of equals; 0 for a vertex without weights.
+pub fn strongest(weights: &SkinWeights) -> usize {
+    let stronger = |best: (usize, f64), &next: &(usize, f64)| if next.1 > best.1 { next } else { best };
+    weights.iter().fold((0, 0.0), stronger).0
 }
 
 impl Mesh {

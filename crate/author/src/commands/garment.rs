@@ -31,7 +31,8 @@ pub struct Arguments {
 /// How the garment is cut.
 #[derive(clap::Args, Clone)]
 pub struct CutArguments {
-    /// What to make. Default: a T-shirt for what walks upright, a coat for an animal, a vest for what has no limbs
+    /// What to make. Default: a T-shirt for what walks upright, a coat for an animal, a vest for what has no limbs, a
+    /// sheet for a rail before an obstacle
     #[arg(long)]
     kind: Option<Kind>,
     /// Vertices, about: 500 to 10000. Default: 3000

@@ -17,8 +17,21 @@ pub(super) struct Piece {
     pub rim: Vec<Option<usize>>,
 }
 
+/// Components with less than this share of the largest one's area are crumbs.
+const CRUMB: f64 = 0.01;
+
 /// The field's zero set, largest component, facing outwards.
 pub(super) fn extract(field: &Field) -> Mesh {
+    largest(zero_set(field)).mesh
+}
+
+/// The field's zero set, every component but crumbs: a body may be of several parts.
+pub(super) fn extract_parts(field: &Field) -> Piece {
+    chosen(zero_set(field), |area, _, best| area >= CRUMB * best)
+}
+
+/// The field's zero set, facing outwards.
+fn zero_set(field: &Field) -> Piece {
     let shape = RuntimeShape::<u32, 3>::new(field.size.map(|n| n as u32));
     let mut buffer = SurfaceNetsBuffer::default();
     surface_nets(&field.values, &shape, [0; 3], field.size.map(|n| n as u32 - 1), &mut buffer);
@@ -31,7 +44,7 @@ pub(super) fn extract(field: &Field) -> Mesh {
         triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
     }
     mesh.triangles = triangles;
-    largest(Piece { rim: vec![None; mesh.positions.len()], mesh }).mesh
+    Piece { rim: vec![None; mesh.positions.len()], mesh }
 }
 
 /// Six times the signed volume of the tetrahedron under a triangle.
@@ -99,8 +112,14 @@ fn cut_one(piece: Piece, opening: &Opening, index: usize) -> Piece {
     Piece { mesh: Mesh { positions, triangles }, rim }
 }
 
-/// The connected component of largest area, its vertices renumbered in their order.
+/// The connected component of largest area.
 fn largest(piece: Piece) -> Piece {
+    chosen(piece, |_, is_largest, _| is_largest)
+}
+
+/// The connected components that are `wanted` by their area, whether it is the largest and the largest area; vertices renumbered in
+/// their order.
+fn chosen(piece: Piece, wanted: impl Fn(f64, bool, f64) -> bool) -> Piece {
     let Piece { mesh, rim } = piece;
     let mut leader: Vec<usize> = (0..mesh.positions.len()).collect();
     fn find(leader: &mut [usize], mut v: usize) -> usize {
@@ -122,7 +141,11 @@ fn largest(piece: Piece) -> Piece {
         area[find(&mut leader, t[0] as usize)] += (b - a).cross(c - a).length();
     }
     let best = (0..area.len()).max_by(|&a, &b| area[a].total_cmp(&area[b])).unwrap_or(0);
-    let kept: Vec<[u32; 3]> = mesh.triangles.into_iter().filter(|t| find(&mut leader, t[0] as usize) == best).collect();
+    let mut keep = |t: &[u32; 3]| {
+        let component = find(&mut leader, t[0] as usize);
+        wanted(area[component], component == best, area[best])
+    };
+    let kept: Vec<[u32; 3]> = mesh.triangles.into_iter().filter(|t| keep(t)).collect();
     compact(&mesh.positions, &rim, kept)
 }
 

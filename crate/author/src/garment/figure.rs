@@ -48,7 +48,9 @@ impl<'a> Figure<'a> {
 
     /// What sort of body this is.
     pub fn build(&self) -> Build {
+        let obstacle = || (0..self.character.joints.len()).any(|joint| self.character.is_obstacle(joint));
         match (self.anatomy.limbs.is_empty(), self.legs) {
+            (true, _) if obstacle() => Build::Rail,
             (true, _) => Build::Limbless,
             (false, Some(_)) => Build::Upright,
             (false, None) => Build::Animal,

@@ -1,5 +1,5 @@
-//! The body's outer skin as one closed even mesh, a voxel away from it: what is left of shells, holes and inner parts when
-//! the body is only touched from outside. The garment's own field, without openings.
+//! The body's outer skin as closed even meshes, one for each part that stands apart, a voxel away from it: what is left of shells, holes
+//! and inner parts when the body is only touched from outside. The garment's own field, without openings.
 
 use super::field::Field;
 use super::pattern::Pattern;
@@ -12,7 +12,7 @@ use glam::DVec3;
 /// Vertices of a skin fine enough to simulate against, about.
 pub const SKIN: usize = 7000;
 
-/// The outer skin of the character's body in its canonical pose, of about so many vertices, and its distance from the body, metres.
+/// The outer skin of the character's body in its canonical pose, every part of it, of about so many vertices, and its distance from the body, metres.
 pub fn hull(character: &Character, vertices: usize) -> Result<(Mesh, f64)> {
     let positions = &character.body.positions;
     let low = positions.iter().fold(DVec3::INFINITY, |low, p| low.min(*p));
@@ -29,7 +29,7 @@ pub fn hull(character: &Character, vertices: usize) -> Result<(Mesh, f64)> {
         smoothing: cell,
     };
     let field = Field::new(&solid, cell);
-    let piece = remesh::remesh(cut::cut(cut::extract(&field), &[]), &field, &[], vertices);
+    let piece = remesh::remesh(cut::extract_parts(&field), &field, &[], vertices);
     match piece.mesh.triangles.is_empty() {
         true => Err(Error::Character("the body encloses nothing a garment could touch".into())),
         false => Ok((piece.mesh, cell)),

@@ -20,6 +20,8 @@ pub enum Kind {
     Coat,
     /// A band around the body with holes for the front limbs or fins
     Vest,
+    /// A square hung from a rail, before an obstacle
+    Sheet,
 }
 
 /// What a body has.
@@ -31,6 +33,8 @@ pub(super) enum Build {
     Animal,
     /// No mirrored limbs.
     Limbless,
+    /// What only holds cloth before an obstacle.
+    Rail,
 }
 
 /// The numbers behind a kind.
@@ -55,11 +59,12 @@ pub(super) struct Preset {
 impl Build {
     /// The kinds it may wear, the default first.
     pub fn kinds(self) -> &'static [Kind] {
-        use Kind::{Cape, Coat, Dress, Robe, Skirt, Trousers, Tshirt, Vest};
+        use Kind::{Cape, Coat, Dress, Robe, Sheet, Skirt, Trousers, Tshirt, Vest};
         match self {
             Build::Upright => &[Tshirt, Dress, Skirt, Robe, Cape, Trousers],
             Build::Animal => &[Coat, Vest, Cape],
             Build::Limbless => &[Vest],
+            Build::Rail => &[Sheet],
         }
     }
 
@@ -69,6 +74,7 @@ impl Build {
             Build::Upright => "a body on two legs",
             Build::Animal => "an animal",
             Build::Limbless => "a body without limbs",
+            Build::Rail => "a rail before an obstacle",
         }
     }
 }
@@ -85,6 +91,7 @@ impl Kind {
             Kind::Trousers => "trousers",
             Kind::Coat => "coat",
             Kind::Vest => "vest",
+            Kind::Sheet => "sheet",
         }
     }
 
@@ -99,6 +106,8 @@ impl Kind {
             Kind::Trousers => [1.0 / 120.0, 0.0, 0.94, 0.0, 0.2, 0.0, 0.0],
             Kind::Coat => [1.0 / 95.0, 0.3, 0.0, 0.05, 0.0, 0.0, 0.0],
             Kind::Vest => [1.0 / 150.0, 0.2, 0.0, 0.05, 0.0, 0.0, 0.0],
+            // Cut by the rail alone.
+            Kind::Sheet => [1.0 / 150.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
         };
         Preset { looseness, sleeve, hem, collar, waist, flare, sleeve_flare }
     }

@@ -15,6 +15,7 @@ mod opening;
 mod pattern;
 mod quality;
 mod remesh;
+mod sheet;
 mod solid;
 mod unwrap;
 
@@ -30,6 +31,8 @@ use opening::{Bare, Opening};
 use pattern::{Pattern, pattern};
 use solid::Solid;
 
+#[cfg(test)]
+mod obstacle_test;
 #[cfg(test)]
 mod test;
 
@@ -61,18 +64,25 @@ pub struct Cut {
 
 /// The kind of garment a character gets when nobody says which.
 pub fn default_kind(character: &Character) -> Result<Kind> {
-    let (_, _, extent) = bounds(character)?;
-    Ok(Figure::new(character, extent).build().kinds()[0])
+    check_body(character)?;
+    let figure = figure_of(character);
+    let (_, _, extent) = bounds(&figure)?;
+    Ok(Figure::new(&figure, extent).build().kinds()[0])
 }
 
 /// A garment for the character in its canonical pose: one connected manifold, open only where its kind has openings.
 ///
-/// The body may be open, of several shells and self-intersecting.
+/// The body may be open, of several shells and self-intersecting; its obstacles are not dressed.
 pub fn shell(character: &Character, cut: &Cut) -> Result<Garment> {
+    check_body(character)?;
+    let character = &figure_of(character);
     let (low, high, extent) = bounds(character)?;
     let figure = Figure::new(character, extent);
     let kind = kind_for(&figure, cut.kind)?;
     let (preset, vertices) = settle(cut, kind)?;
+    if kind == Kind::Sheet {
+        return sheet::sheet(character, vertices);
+    }
     let cell = cell(low, high);
     let looseness = cut.looseness.unwrap_or((preset.looseness * extent).max(cell));
     if !(looseness >= cell && looseness <= 0.1 * extent) {
@@ -114,6 +124,11 @@ pub fn shell(character: &Character, cut: &Cut) -> Result<Garment> {
     }
     let pins = pins(&piece, openings, quality.edge);
     Ok(Garment { surface: unwrap::unwrap(&piece.mesh), mesh: piece.mesh, pins })
+}
+
+/// The character without its obstacles.
+fn figure_of(character: &Character) -> Character {
+    character.part(|joint| !character.is_obstacle(joint))
 }
 
 /// The kind to make on a figure, or why it cannot be.

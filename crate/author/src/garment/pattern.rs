@@ -48,7 +48,7 @@ impl Pattern {
 pub(super) fn pattern(figure: &Figure, kind: Kind, preset: &Preset, loose: f64, past: f64) -> Pattern {
     let draft = Draft { figure, preset, loose, past };
     match (kind, figure.legs, figure.build()) {
-        (_, _, Build::Limbless) => draft.tube(),
+        (_, _, Build::Limbless | Build::Rail) => draft.tube(),
         (Kind::Skirt, Some(legs), _) => draft.skirt(legs),
         (Kind::Trousers, Some(legs), _) => draft.trousers(legs),
         (Kind::Cape, Some(legs), _) => draft.cape(legs),

@@ -5,7 +5,7 @@ use crate::rig::{Joint, Mesh, Surface};
 use glam::{DAffine3, DVec2};
 
 /// Adds a capsule from `a` to `b` weighted to one joint.
-fn capsule(character: &mut Character, joint: usize, a: DVec3, b: DVec3, radius: f64) {
+pub(super) fn capsule(character: &mut Character, joint: usize, a: DVec3, b: DVec3, radius: f64) {
     let axis = (b - a).normalize_or(DVec3::Y);
     let (u, v) = axis.any_orthonormal_pair();
     let (rings, segments) = (12, 20);
@@ -31,10 +31,10 @@ fn capsule(character: &mut Character, joint: usize, a: DVec3, b: DVec3, radius: 
 }
 
 /// Name, parent, joint, end of the capsule, radius.
-type Bone = (&'static str, Option<usize>, [f64; 3], [f64; 3], f64);
+pub(super) type Bone = (&'static str, Option<usize>, [f64; 3], [f64; 3], f64);
 
 /// A character of bones.
-fn character(bones: &[Bone]) -> Character {
+pub(super) fn character(bones: &[Bone]) -> Character {
     let joint = |bone: &Bone| Joint {
         name: bone.0.into(),
         parent: bone.1,

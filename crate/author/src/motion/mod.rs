@@ -21,7 +21,7 @@ const KINDS: &[Kind] = &[
     ("two arms and two legs", humanoid::clips),
     ("four legs", quadruped::clips),
     ("fins and flukes", swimmer::clips),
-    ("one joint", rigid::clips),
+    ("an obstacle before a root that stands still", rigid::clips),
 ];
 
 /// Every clip for `character` at `rate` poses per second, of the first kind of body its skeleton fits.

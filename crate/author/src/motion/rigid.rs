@@ -1,38 +1,116 @@
-//! Motion of a rigid prop, a skeleton of one joint: rest, slow slides and turns.
+//! Motion of a rigid obstacle against what stands still: pushed into the cloth, lifted, slid along, turned, taken away, slowly.
 
-use super::bones::{Bones, euler};
-use super::sample;
-use crate::rig::{Character, Clip};
+use super::curve::{Channels, halton, through};
+use super::{bones::euler, sample};
+use crate::rig::{Character, Clip, Pose};
 use crate::{Error, Result};
-use glam::DVec3;
-use std::f64::consts::TAU;
+use glam::{DAffine3, DVec3};
 
-/// A clip: its name, how far it swings to the left, up and forward (metres), and how far it turns (up, left, roll; degrees).
-const CLIPS: &[(&str, [f64; 3], [f64; 3])] = &[
-    ("still", [0.0; 3], [0.0; 3]),
-    ("slide", [0.25, 0.0, 0.0], [0.0; 3]),
-    ("lift", [0.0, 0.2, 0.0], [0.0; 3]),
-    ("push", [0.0, 0.0, 0.25], [0.0; 3]),
-    ("turn", [0.0; 3], [0.0, 90.0, 0.0]),
-    ("tilt", [0.0, 0.05, 0.0], [30.0, 0.0, 0.0]),
-    ("roll", [0.1, 0.0, 0.0], [0.0, 0.0, 30.0]),
-];
+/// Where the obstacle is against its canonical place (left, up, forward; metres) and how it is turned (up, left, roll; degrees).
+type Place = [[f64; 3]; 2];
+
 /// Seconds until a clip repeats.
-const PERIOD: f64 = 4.0;
+const PERIOD: f64 = 10.0;
+/// Clips through low-discrepancy places, and how many places each goes through.
+const WANDERINGS: usize = 8;
+const KEYS: usize = 8;
+/// Bounds of those places.
+const LEAST: Place = [[-0.24, -0.12, -0.12], [-30.0, -45.0, -30.0]];
+const MOST: Place = [[0.24, 0.18, 0.48], [30.0, 45.0, 30.0]];
 
-/// Every clip for `character` at `rate` poses per second.
+/// A clip: its name, and the places it goes through at even intervals.
+const MOVES: &[(&str, &[Place])] = &[
+    ("push", &[[[0.0; 3], [0.0; 3]], [[0.0, 0.0, 0.46], [0.0; 3]]]),
+    ("push high", &[[[0.0, 0.1, 0.0], [0.0; 3]], [[0.02, 0.18, 0.4], [0.0, 20.0, 0.0]]]),
+    ("push low", &[[[0.0, -0.06, 0.0], [0.0; 3]], [[-0.02, -0.12, 0.4], [0.0, -20.0, 0.0]]]),
+    ("push left", &[[[0.2, 0.0, 0.0], [0.0; 3]], [[0.2, 0.02, 0.42], [0.0, 30.0, 0.0]]]),
+    ("push right", &[[[-0.2, 0.0, 0.0], [0.0; 3]], [[-0.2, 0.02, 0.42], [0.0, -30.0, 0.0]]]),
+    ("lift", &[[[0.0, -0.1, 0.22], [0.0; 3]], [[0.0, 0.18, 0.24], [10.0, 0.0, 0.0]]]),
+    ("lift far out", &[[[0.0, -0.1, 0.42], [0.0; 3]], [[0.0, 0.15, 0.44], [20.0, 0.0, 0.0]]]),
+    ("slide", &[[[-0.22, 0.0, 0.2], [0.0; 3]], [[0.22, 0.0, 0.2], [0.0; 3]]]),
+    ("slide far out", &[[[0.22, 0.0, 0.4], [0.0, 0.0, 20.0]], [[-0.22, 0.0, 0.4], [0.0, 0.0, -20.0]]]),
+    ("slide low", &[[[-0.2, -0.11, 0.3], [0.0; 3]], [[0.2, -0.11, 0.3], [0.0, 40.0, 0.0]]]),
+    ("turn", &[[[0.0, 0.02, 0.34], [0.0, -45.0, 0.0]], [[0.0, 0.0, 0.36], [0.0, 45.0, 0.0]]]),
+    ("tilt", &[[[0.05, 0.0, 0.28], [-30.0, 0.0, 0.0]], [[0.05, 0.04, 0.28], [30.0, 0.0, 0.0]]]),
+    ("roll", &[[[-0.05, 0.0, 0.32], [0.0, 0.0, -30.0]], [[-0.05, 0.0, 0.3], [0.0, 0.0, 30.0]]]),
+    (
+        "level circle",
+        &[
+            [[0.0, 0.0, 0.1], [0.0; 3]],
+            [[0.2, 0.0, 0.27], [0.0, 30.0, 0.0]],
+            [[0.0, 0.0, 0.45], [0.0; 3]],
+            [[-0.2, 0.0, 0.27], [0.0, -30.0, 0.0]],
+        ],
+    ),
+    (
+        "swing",
+        &[
+            [[0.0, -0.1, 0.32], [0.0; 3]],
+            [[0.2, 0.1, 0.3], [0.0, 0.0, -25.0]],
+            [[0.0, -0.1, 0.28], [0.0; 3]],
+            [[-0.2, 0.1, 0.3], [0.0, 0.0, 25.0]],
+        ],
+    ),
+    (
+        "circle",
+        &[
+            [[0.18, 0.03, 0.35], [0.0; 3]],
+            [[0.0, 0.16, 0.35], [20.0, 0.0, 0.0]],
+            [[-0.18, 0.03, 0.35], [0.0, 30.0, 0.0]],
+            [[0.0, -0.1, 0.35], [-20.0, 0.0, 0.0]],
+        ],
+    ),
+    (
+        "come and leave",
+        &[
+            [[0.1, 0.1, -0.12], [0.0; 3]],
+            [[0.1, 0.08, 0.2], [10.0, 20.0, 0.0]],
+            [[0.0, 0.05, 0.47], [20.0, 30.0, 10.0]],
+            [[-0.1, 0.0, 0.2], [10.0, -10.0, 0.0]],
+        ],
+    ),
+];
+
+/// Every clip for `character`, a root that stands still and one obstacle, at `rate` poses per second.
 pub fn clips(character: &Character, rate: f64) -> Result<Vec<Clip>> {
-    if character.joints.len() != 1 {
-        return Err(Error::Character(format!("wanted a single joint, found {}", character.joints.len())));
+    let joints = character.joints.len();
+    if joints != 2 || character.root != 0 || !character.is_obstacle(1) {
+        return Err(Error::Character(format!("wanted a root and one obstacle, found {joints} joints")));
     }
-    let bones = Bones::new(character);
-    let clip = |&(name, far, turned): &(&str, [f64; 3], [f64; 3])| {
-        sample(name, PERIOD, rate, |time| {
-            let share = (TAU * time / PERIOD).sin();
-            let mut turns = bones.turns();
-            turns.local[0] = euler(turned.map(|angle| angle * share));
-            bones.assemble(0, bones.place(0) + DVec3::from_array(far) * share, &turns)
+    let bind = character.canonical_pose();
+    // Whether a ball turns makes no difference to the cloth, and would only have to be learned.
+    let turns = if is_ball(character, bind[1].translation) { 0.0 } else { 1.0 };
+    let pose = |[place, turned]: Place| -> Pose {
+        let turn = DAffine3::from_quat(euler(turned.map(|angle| angle * turns)));
+        let there = DAffine3::from_translation(bind[1].translation + DVec3::from_array(place));
+        vec![bind[0], there * turn * DAffine3::from_mat3(bind[1].matrix3)]
+    };
+    let play = |name: &str, places: &[Place]| {
+        let step = PERIOD / places.len() as f64;
+        let keys: Vec<(f64, Place)> = (0..places.len()).map(|i| (step * i as f64, places[i])).collect();
+        sample(name, PERIOD, rate, |time| pose(through(&keys, PERIOD, time)))
+    };
+    // Before the moves: the last clips of a character are what a trained model is tested on.
+    let wander = |seed: usize| play(&format!("wander {}", seed + 1), &wandering(seed));
+    Ok((0..WANDERINGS).map(wander).chain(MOVES.iter().map(|(name, places)| play(name, places))).collect())
+}
+
+/// Whether the obstacle is as wide on every side of its joint.
+fn is_ball(character: &Character, centre: DVec3) -> bool {
+    let body = character.part(|joint| joint == 1).body;
+    let radii = body.positions.iter().map(|point| point.distance(centre));
+    let (least, most) = radii.fold((f64::INFINITY, 0.0), |(least, most): (f64, f64), r| (least.min(r), most.max(r)));
+    most < 1.05 * least
+}
+
+/// Places number `seed` of the sequence.
+fn wandering(seed: usize) -> Vec<Place> {
+    let place = |key: usize| {
+        let dimension = std::cell::Cell::new(0);
+        LEAST.zip(&MOST, |least, most| {
+            dimension.set(dimension.get() + 1);
+            least + (most - least) * halton(1 + seed * KEYS + key, dimension.get() - 1)
         })
     };
-    Ok(CLIPS.iter().map(clip).collect())
+    (0..KEYS).map(place).collect()
 }

@@ -4,7 +4,7 @@ use super::*;
 use crate::character::tests::cast;
 use glam::{DAffine3, DVec3};
 
-const NAMES: [&str; 4] = ["cat", "fox", "dolphin", "sphere"];
+const NAMES: [&str; 5] = ["cat", "fox", "dolphin", "sphere", "box"];
 
 /// Names and characters of those that move as animals and props do.
 fn animals() -> impl Iterator<Item = (&'static str, &'static Character)> {
@@ -13,7 +13,7 @@ fn animals() -> impl Iterator<Item = (&'static str, &'static Character)> {
 
 #[test]
 fn animals_have_clips_enough_and_names_of_their_own() {
-    for (name, character) in animals().filter(|(name, _)| *name != "sphere") {
+    for (name, character) in animals() {
         let clips = &character.clips;
         let seconds: f64 = clips.iter().map(|clip| (clip.poses.len() - 1) as f64 / clip.rate).sum();
         assert!(clips.len() >= 20 && seconds > 200.0, "{name}: {} clips of {seconds} s", clips.len());
@@ -73,7 +73,8 @@ fn bones_keep_their_lengths_and_joints_stay_rigid() {
                 for (j, joint) in character.joints.iter().enumerate() {
                     let what = || format!("{name} {} {}", clip.name, joint.name);
                     assert!((pose[j].matrix3.determinant() - 1.0).abs() < 1e-9, "{} is not rigid", what());
-                    let Some(parent) = joint.parent else { continue };
+                    // An obstacle goes where it will.
+                    let Some(parent) = joint.parent.filter(|_| !character.is_obstacle(j)) else { continue };
                     let length = |pose: &[DAffine3]| pose[j].translation.distance(pose[parent].translation);
                     assert!((length(pose) - length(&bind)).abs() < 1e-9, "{} changes length", what());
                 }
@@ -180,7 +181,7 @@ fn a_body_of_no_kind_is_told_what_each_kind_lacks() {
         joint.name = joint.name.replace("LeftBackUpLeg", "Tentacle");
     }
     let message = clips(&odd, RATE).expect_err("no left hind leg").to_string();
-    for lacking in ["LeftUpLeg", "LeftBackUpLeg", "Fluke", "a single joint"] {
+    for lacking in ["LeftUpLeg", "LeftBackUpLeg", "Fluke", "a root and one obstacle"] {
         assert!(message.contains(lacking), "{message}");
     }
 }
@@ -192,4 +193,25 @@ fn a_leg_without_length_is_refused() {
     odd.joints[knee].inverse_bind = odd.joints[hip].inverse_bind;
     let message = clips(&odd, RATE).expect_err("no thigh").to_string();
     assert!(message.contains("LeftBackUpLeg"), "{message}");
+}
+
+/// The sheet hangs before the rail, at z = 0.02 m.
+#[test]
+fn obstacles_enter_the_cloth_and_leave_it() {
+    for name in ["sphere", "box"] {
+        let character = cast(name);
+        let bind = character.canonical_pose();
+        let obstacle = character.part(|joint| character.is_obstacle(joint));
+        let poses = || character.clips.iter().flat_map(|clip| clip.poses.iter().step_by(30));
+        assert!(poses().all(|pose| pose[0] == bind[0]), "{name}: the root moves");
+        let front = |pose: &Pose| obstacle.pose_body(pose).iter().map(|p| p.z).fold(f64::MIN, f64::max);
+        let fronts: Vec<f64> = poses().map(front).collect();
+        let share = |wanted: &dyn Fn(f64) -> bool| {
+            fronts.iter().filter(|front| wanted(**front)).count() as f64 / fronts.len() as f64
+        };
+        assert!(share(&|front| front > 0.15) > 0.3, "{name} stays behind the cloth");
+        assert!(share(&|front| front < 0.02) > 0.05, "{name} never leaves the cloth");
+        let turned = poses().filter(|pose| !pose[1].matrix3.abs_diff_eq(bind[1].matrix3, 0.1)).count();
+        assert_eq!(turned > 0, name == "box", "{name} turns in {turned} poses");
+    }
 }

@@ -1,6 +1,6 @@
 //! The part of the body a garment can touch: its triangles, adjacency and skin, without a pose.
 //! Far joints (hands below a T-shirt) are not touched at all: a thin part far away only pinches. Leaving single far
-//! triangles untouched was tried and made holes in limbs that later met the cloth.
+//! triangles untouched was tried and made holes in limbs that later met the cloth. Obstacles come from anywhere.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use parry3d_f64::math::Vector;
 use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy};
 
 use super::posed::PosedBody;
-use crate::rig::{Character, Mesh, SkinWeights};
+use crate::rig::{Character, Mesh, SkinWeights, strongest};
 use crate::{Error, Result};
 
 /// The body in the canonical pose.
@@ -32,7 +32,8 @@ pub(super) struct Collider {
 }
 
 impl Collider {
-    /// Keeps the triangles of every joint that moves a body vertex within `reach` metres of the garment, canonical.
+    /// Keeps the triangles of every obstacle, and of every joint that moves a body vertex within `reach` metres of the garment,
+    /// canonical.
     pub fn new(character: &Character, garment: &Mesh, reach: f64) -> Result<Self> {
         let body = &character.body.positions;
         check(character)?;
@@ -44,7 +45,7 @@ impl Collider {
             .map(|p| tree.query(&p.to_array()).nearest_one::<SquaredEuclidean<f64>>().execute().distance.sqrt())
             .collect();
         near_enough(body, &distance)?;
-        let mut near = vec![false; character.joints.len()];
+        let mut near: Vec<bool> = (0..character.joints.len()).map(|joint| character.is_obstacle(joint)).collect();
         for (weights, distance) in character.weights.iter().zip(&distance) {
             near[strongest(weights)] |= *distance < reach;
         }
@@ -56,7 +57,7 @@ impl Collider {
     }
 
     /// The body, touched where a joint marked in `near` moves a corner most.
-    fn of_joints(character: &Character, near: &[bool]) -> Self {
+    pub fn of_joints(character: &Character, near: &[bool]) -> Self {
         let body = &character.body.positions;
         let mut used = BTreeMap::new();
         let (mut faces, mut touched) = (Vec::new(), Vec::new());
@@ -103,12 +104,6 @@ impl Collider {
     }
 }
 
-/// The joint that moves a vertex most, the first of equals.
-fn strongest(weights: &SkinWeights) -> usize {
-    let stronger = |best: (usize, f64), &next: &(usize, f64)| if next.1 > best.1 { next } else { best };
-    weights.iter().fold((0, 0.0), stronger).0
-}
-
 /// `Σ_j w_j M_j`.
 pub(super) fn blend(weights: &[(usize, f64)], transforms: &[DAffine3]) -> DAffine3 {
     let zero = DAffine3 { matrix3: DMat3::ZERO, translation: DVec3::ZERO };
@@ -125,7 +120,7 @@ pub(super) fn bounds([a, b, c]: [DVec3; 3]) -> Aabb {
 }
 
 /// The skinned body must be usable: finite, indices in range, weights on known joints.
-fn check(character: &Character) -> Result<()> {
+pub(super) fn check(character: &Character) -> Result<()> {
     let (count, joints) = (character.body.positions.len(), character.joints.len());
     let fail = |reason: String| Err(Error::Simulation(format!("body: {reason}")));
     if character.weights.len() != count {

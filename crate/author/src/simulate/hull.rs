@@ -4,11 +4,11 @@
 
 use std::collections::BTreeMap;
 
-use super::collider::Collider;
+use super::collider::{Collider, check};
 use super::posed::PosedBody;
-use crate::Result;
 use crate::garment;
 use crate::rig::{Character, Mesh, SkinWeights};
+use crate::{Error, Result};
 
 /// What stays between the skin and the body, metres.
 const GAP: f64 = 0.0015;
@@ -17,10 +17,45 @@ const ROUNDS: usize = 4;
 /// Joints a vertex of the skin may follow.
 const JOINTS: usize = 6;
 
-/// The character with its outer skin, of about so many vertices, for a body; a vertex follows the body point under it.
-pub fn hull(character: &Character, garment: &Mesh, vertices: usize) -> Result<Character> {
+/// Fewest vertices of the skin of a part.
+const FEWEST: usize = 200;
+
+/// The character with its outer skin, of about so many vertices, for a body: one closed mesh for the figure and one for each obstacle, so
+/// that one far away does not coarsen the figure's and one in a hand stays stiff. Vertices are dealt by area;
+/// each follows the body point under it.
+pub fn hull(character: &Character, vertices: usize) -> Result<Character> {
+    check(character)?;
+    let joints = 0..character.joints.len();
+    let figure = character.part(|joint| !character.is_obstacle(joint));
+    let obstacles = joints.filter(|at| character.is_obstacle(*at)).map(|at| character.part(|joint| joint == at));
+    let parts: Vec<Character> =
+        std::iter::once(figure).chain(obstacles).filter(|part| !part.body.triangles.is_empty()).collect();
+    let areas: Vec<f64> = parts.iter().map(|part| area(&part.body)).collect();
+    let whole = areas.iter().sum::<f64>().max(f64::MIN_POSITIVE);
+    let (mut body, mut weights) = (Mesh::default(), Vec::new());
+    for (part, area) in parts.iter().zip(areas) {
+        let skin = part_hull(part, ((vertices as f64 * area / whole) as usize).max(FEWEST))?;
+        let first = body.positions.len() as u32;
+        body.triangles.extend(skin.body.triangles.iter().map(|triangle| triangle.map(|corner| first + corner)));
+        body.positions.extend(skin.body.positions);
+        weights.extend(skin.weights);
+    }
+    match body.triangles.is_empty() {
+        true => Err(Error::Character("the body encloses nothing a garment could touch".into())),
+        false => Ok(Character { body, weights, ..character.clone() }),
+    }
+}
+
+/// Area of a mesh, square metres.
+fn area(mesh: &Mesh) -> f64 {
+    let corners = mesh.triangles.iter().map(|triangle| triangle.map(|i| mesh.positions[i as usize]));
+    corners.map(|[a, b, c]| 0.5 * (b - a).cross(c - a).length()).sum()
+}
+
+/// The outer skin of all of a body.
+fn part_hull(character: &Character, vertices: usize) -> Result<Character> {
     let (mut mesh, distance) = garment::hull(character, vertices)?;
-    let collider = Collider::new(character, garment, f64::MAX)?;
+    let collider = Collider::of_joints(character, &vec![true; character.joints.len()]);
     let body = PosedBody::new(&collider, collider.rest.clone());
     let mut weights: Vec<SkinWeights> = Vec::with_capacity(mesh.positions.len());
     for position in &mut mesh.positions {

@@ -44,7 +44,7 @@ impl Simulator {
         let rest = garment.mesh.positions.clone();
         settings.check(rest.len())?;
         let cloth = Cloth::new(&garment.mesh, &warp(garment), &material, settings.shape)?;
-        let mut skin = hull(character, &garment.mesh, SKIN)?;
+        let mut skin = hull(character, SKIN)?;
         smooth(&mut skin);
         let collider = Collider::new(&skin, &garment.mesh, settings.reach)?;
         let body = BodyDistance::new(character, &garment.mesh)?;

@@ -3,7 +3,7 @@
 
 use super::weights;
 use crate::dataset::{Sample, Setup};
-use crate::rig::SkinWeights;
+use crate::rig::{SkinWeights, is_obstacle};
 use crate::{Error, Result};
 use ctsn_core::cpu::{Level, skin};
 use ctsn_core::device::Space;
@@ -55,7 +55,7 @@ pub fn initial(setup: &Setup, train: &[&Sample], architecture: Architecture, see
     let inputs = |l: usize| if l == 0 { 3 } else { features };
     Ok(HostModel {
         sizes: Sizes { vertices: n, joints, embedding, basis, features, heads },
-        reference: reference(setup, &graph, &nearest, &frames),
+        reference: reference(setup, &graph, &frames)?,
         rig: standardised(setup, &frames)?,
         skin: weights::trainable(&graph, &weights::smooth(setup, &graph, &nearest)?),
         triangles: setup.triangles.clone(),
@@ -119,14 +119,14 @@ fn moments(values: impl Iterator<Item = f64> + Clone) -> (f32, f32) {
     (mean as f32, variance.sqrt() as f32)
 }
 
-fn reference(
-    setup: &Setup,
-    graph: &Graph<Vec<u32>>,
-    nearest: &[usize],
-    frames: &[BodyFrame],
-) -> Reference<Vec<f32>, Vec<u32>> {
+fn reference(setup: &Setup, graph: &Graph<Vec<u32>>, frames: &[BodyFrame]) -> Result<Reference<Vec<f32>, Vec<u32>>> {
+    let nearest = setup.reference()?;
     let rest: Vec<f32> = nearest.iter().flat_map(|i| setup.body[3 * i..3 * i + 3].iter().copied()).collect();
-    let rows: Vec<_> = nearest.iter().map(|i| setup.body_weights[*i].clone()).collect();
+    // Where figure and obstacle part, cloth between them would be torn: the seam was seen in what the network made of it.
+    let rows: Vec<_> = match setup.description.joints.iter().any(|joint| is_obstacle(joint)) {
+        true => weights::smooth(setup, graph, &nearest)?,
+        false => nearest.iter().map(|i| setup.body_weights[*i].clone()).collect(),
+    };
     let skin = rows_to_skin(&rows);
     let mut values = [Vec::new(), Vec::new(), Vec::new()];
     let mut posed = vec![0.0; rest.len()];
@@ -142,13 +142,13 @@ fn reference(
     };
     let lengths = (0..nearest.len()).flat_map(|i| graph.of(i).iter().map(move |j| length(i, *j as usize)));
     let total: f32 = lengths.sum();
-    Reference {
+    Ok(Reference {
         mean: moments.map(|moments| moments.0),
         std: moments.map(|moments| moments.1.max(1e-3)),
         edge_scale: total / graph.neighbours.len().max(1) as f32,
         rest,
         skin,
-    }
+    })
 }
 
 pub(super) fn rows_to_skin(rows: &[SkinWeights]) -> Skin<Vec<f32>, Vec<u32>> {

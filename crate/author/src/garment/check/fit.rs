@@ -4,7 +4,7 @@ use super::{Findings, list};
 use crate::Result;
 use crate::garment::{SKIN, hull, solid::closest_point};
 use crate::gltf::Source;
-use crate::rig::{Character, Mesh};
+use crate::rig::{Character, Garment, Mesh};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -17,7 +17,8 @@ const INSIDE: f64 = 0.05;
 /// Depth out of which the simulator cannot be trusted to lift cloth, in body extents.
 const DEEP: f64 = 0.012;
 
-/// Half of the vertices may be farther than this from the body before the garment is somewhere else, in body extents.
+/// Half of the vertices may be farther than this from the body before the garment is somewhere else, in body extents: half of the
+/// pinned ones where it has any, for what is held may hang anywhere.
 const FAR: f64 = 0.2;
 
 /// Share of the area that looks inwards at which a garment is inside out.
@@ -27,7 +28,8 @@ const INWARDS: f64 = 0.6;
 type Place = (f64, DVec3);
 
 /// Checks the fit on the canonical pose.
-pub(super) fn check(character: &Character, mesh: &Mesh, source: &Source, findings: &mut Findings) -> Result<()> {
+pub(super) fn check(character: &Character, garment: &Garment, source: &Source, findings: &mut Findings) -> Result<()> {
+    let Garment { mesh, pins, .. } = garment;
     let extent = |positions: &[DVec3]| {
         let low = positions.iter().fold(DVec3::INFINITY, |low, p| low.min(*p));
         (positions.iter().fold(DVec3::NEG_INFINITY, |high, p| high.max(*p)) - low).max_element()
@@ -47,7 +49,8 @@ pub(super) fn check(character: &Character, mesh: &Mesh, source: &Source, finding
         return Ok(());
     }
     let places = places(character, mesh)?;
-    let mut away: Vec<f64> = places.iter().map(|(distance, _)| distance.abs()).collect();
+    let held = |v: &usize| pins.is_empty() || pins.binary_search(&(*v as u32)).is_ok();
+    let mut away: Vec<f64> = (0..places.len()).filter(held).map(|v| places[v].0.abs()).collect();
     away.sort_by(f64::total_cmp);
     let median = away.get(away.len() / 2).copied().unwrap_or_default();
     if median > FAR * body {

@@ -24,7 +24,7 @@ pub struct Findings {
 pub fn check(character: &Character, garment: &Garment, source: &Source) -> Result<Findings> {
     let mut findings = Findings::default();
     topology::check(&garment.mesh, source, &mut findings);
-    fit::check(character, &garment.mesh, source, &mut findings)?;
+    fit::check(character, garment, source, &mut findings)?;
     Ok(findings)
 }
 

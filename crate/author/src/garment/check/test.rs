@@ -54,6 +54,20 @@ fn scales_and_places_that_cannot_be_are_refused() {
 }
 
 #[test]
+fn what_is_held_may_hang_anywhere() {
+    let (person, skirt) = scene();
+    let mut long = skirt.clone();
+    long.mesh.positions.iter_mut().for_each(|p| p.z = if p.y < 1.0 { p.z + 2.0 * (1.0 - p.y) } else { p.z });
+    let source = Source { numbers: (0..long.mesh.positions.len() as u32).collect(), ..Source::default() };
+    let place = |garment: &Garment| {
+        let found = check(&person, garment, &source).unwrap();
+        found.errors.iter().any(|message| message.contains("place"))
+    };
+    assert!(!skirt.pins.is_empty() && !place(&long));
+    assert!(place(&Garment { pins: Vec::new(), ..long }));
+}
+
+#[test]
 fn cloth_inside_the_body_is_named_by_vertex() {
     let (person, skirt) = scene();
     let mut tight = skirt.mesh.clone();

@@ -7,6 +7,7 @@ mod fabric;
 mod friction;
 mod hostile;
 mod layers;
+mod obstacle;
 mod pose;
 mod scene;
 mod sphere;
