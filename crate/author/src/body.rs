@@ -40,7 +40,7 @@ pub fn body(setup: &Setup, samples: &[&Sample]) -> Result<Body<Vec<f32>, Vec<u32
     let around = Graph::new(skin.body.positions.len(), skin.body.triangles.as_flattened());
     let missed = |(sample, seen): (&&&Sample, &Vec<_>)| missed(&skin, &around, &seeds, sample, seen);
     let missed: Vec<Vec<Option<u32>>> = poses.par_iter().zip(&seen).map(missed).collect();
-    add_other_side(&mut seeds, &missed, &Graph::new(cloth.positions.len(), &setup.triangles));
+    add_other_side(&mut seeds, &missed, &Graph::new(setup.template.len() / 3, &setup.triangles));
     Ok(cut(&skin, &visits, &seeds))
 }
 
