@@ -1,4 +1,6 @@
 //! Adam (Kingma and Ba 2015), with cosine decay of the learning rate. network.md §6.
+//! Tried: steps of the bases B and M averaged over neighbouring vertices, against lumps. With one to four rounds the validation error of
+//! a sheet (160 poses, 80 epochs) went from 6.78 to 6.74 to 6.77 mm: not worth a pass over the gradients.
 
 use rayon::prelude::*;
 
