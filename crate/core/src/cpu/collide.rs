@@ -7,8 +7,9 @@ use glam::Vec3;
 
 /// Distance at which cloth is kept from the body, metres.
 pub const GAP: f32 = 0.003;
-/// Cloth further inside is not moved, metres: that far, the nearest skin says nothing about where the cloth belongs.
-pub const DEPTH: f32 = 0.06;
+/// Cloth further inside is not moved, metres: that far, the nearest skin says nothing about where the cloth belongs. (With half of it,
+/// single vertices stayed inside an obstacle where the prediction was worst.)
+pub const DEPTH: f32 = 0.12;
 /// Steps of the walk over the body's surface.
 pub const STEPS: usize = 12;
 /// Least cosine between the way to the closest point and the normal there; less is beside the border of an open body.
