@@ -66,12 +66,12 @@ fn part_hull(character: &Character, vertices: usize) -> Result<Character> {
         weights.push(collider.skin(hit.face, hit.barycentric));
         *position -= hit.normal * (distance - GAP).min(hit.distance - GAP);
     }
-    weights.iter_mut().for_each(strongest);
+    weights.iter_mut().for_each(keep_strongest);
     Ok(Character { body: mesh, weights, ..character.clone() })
 }
 
 /// Keeps the weights of the strongest joints.
-fn strongest(row: &mut SkinWeights) {
+fn keep_strongest(row: &mut SkinWeights) {
     row.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
     row.truncate(JOINTS);
     let total: f64 = row.iter().map(|(_, weight)| weight).sum();
@@ -96,7 +96,7 @@ pub(super) fn smooth(skin: &mut Character) {
                 row.iter().for_each(|(joint, weight)| *sum.entry(*joint).or_insert(0.0) += share * weight);
             }
             let mut row: SkinWeights = sum.into_iter().collect();
-            strongest(&mut row);
+            keep_strongest(&mut row);
             row
         };
         *weights = weights.iter().zip(&neighbours).map(mean).collect();
