@@ -33,7 +33,7 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
-    Bake(bake::Arguments),
+    Bake(Box<bake::Arguments>),
     Character(character::Arguments),
     Motion(motion::Arguments),
     Garment(garment::Arguments),

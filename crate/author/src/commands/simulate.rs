@@ -54,6 +54,10 @@ pub struct Options {
     /// Simulate this many poses a second time, every joint turned by half a degree, to measure the noise of the truth
     #[arg(long, value_name = "K", default_value_t = 0)]
     pub noise_floor: usize,
+    /// Keep poses with at most this share of the vertices inside the body where it passes into itself, an upper arm into the chest
+    /// say: no place is outside there. With 0, little is left of generous motion on slim limbs
+    #[arg(long, value_name = "SHARE", default_value_t = 0.03)]
+    pub pinched: f64,
 }
 
 pub fn run(arguments: &Arguments) -> Result<()> {
@@ -69,7 +73,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         garment: &garment,
         names: names.each_ref().map(String::as_str),
         material: (&options.material, material),
-        settings: Settings { attached: garment.pins.clone(), ..Settings::default() },
+        settings: Settings { attached: garment.pins.clone(), pinched: options.pinched, ..Settings::default() },
         shard: *shard,
         poses: options.poses,
         twins: options.noise_floor,

@@ -14,6 +14,9 @@ use super::posed::PosedBody;
 use crate::rig::{Character, Mesh, SkinWeights, strongest};
 use crate::{Error, Result};
 
+/// Canonical distance within which faces belong to one part, metres.
+const SAME_PART: f64 = 0.12;
+
 /// The body in the canonical pose.
 #[derive(Clone)]
 pub(super) struct Collider {
@@ -90,6 +93,21 @@ impl Collider {
             weights.iter().map(|&(joint, weight)| skinning[joint].transform_point3(*rest) * weight).sum()
         };
         PosedBody::new(self, self.rest.iter().zip(&self.weights).map(blend).collect())
+    }
+
+    /// The body posed, every vertex raised along its normal by a share of its height, metres.
+    pub fn raised(&self, skinning: &[DAffine3], heights: &[f64], share: f64) -> PosedBody<'_> {
+        let posed = self.pose(skinning);
+        match heights.iter().any(|height| *height > 0.0) {
+            true => PosedBody::new(self, posed.offset(heights, share)),
+            false => posed,
+        }
+    }
+
+    /// Whether two faces are near each other in the canonical pose: of one part.
+    pub fn near(&self, a: u32, b: u32) -> bool {
+        let place = |face: u32| self.rest[self.faces[face as usize][0] as usize];
+        place(a).distance(place(b)) < SAME_PART
     }
 
     /// Skin weights at a point of a face, given by its barycentric coordinates.

@@ -18,7 +18,7 @@ const MOVES: usize = 8;
 /// A body prepared for distance queries.
 pub struct BodyDistance {
     character: Character,
-    collider: Collider,
+    pub(super) collider: Collider,
 }
 
 impl BodyDistance {
@@ -29,7 +29,7 @@ impl BodyDistance {
     }
 
     /// The body in `pose` (world), in its body frame.
-    fn posed(&self, pose: &Pose) -> PosedBody<'_> {
+    pub(super) fn posed(&self, pose: &Pose) -> PosedBody<'_> {
         self.collider.pose(&self.character.skinning(&to_body_frame(&self.character, pose)))
     }
 
@@ -38,7 +38,11 @@ impl BodyDistance {
     pub fn signed(&self, pose: &Pose, vertices: &[DVec3]) -> Vec<f64> {
         let body = self.posed(pose);
         let distance = |vertex: &DVec3| body.closest(*vertex, None, 0.5).map_or(f64::INFINITY, |hit| hit.distance);
-        vertices.iter().map(distance).collect()
+        let signed = |vertex: &DVec3| match distance(vertex) {
+            behind if behind < 0.0 && !body.encloses(*vertex) => -behind,
+            distance => distance,
+        };
+        vertices.iter().map(signed).collect()
     }
 
     /// How many of the cloth's `edges` pass through a face of the body in `pose` (world); vertices [n], body frame, metres.
@@ -55,7 +59,7 @@ impl BodyDistance {
         for vertex in vertices {
             let mut place = *vertex;
             for _ in 0..MOVES {
-                match body.closest(place, None, 0.5).filter(|hit| hit.distance < 0.0) {
+                match body.closest(place, None, 0.5).filter(|hit| hit.distance < 0.0 && body.encloses(place)) {
                     Some(hit) => place += hit.normal * (CLEAR - hit.distance),
                     None => break,
                 }

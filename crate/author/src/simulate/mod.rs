@@ -6,6 +6,7 @@ mod burial;
 mod cloth;
 mod collider;
 mod contact;
+mod cover;
 mod crossing;
 mod distance;
 mod grain;

@@ -2,6 +2,7 @@
 //! (Bærentzen & Aanæs 2005). Linear blend skinning makes bodies that cut through themselves, so depth is limited.
 
 use std::cell::Cell;
+use std::f64::consts::TAU;
 
 use glam::DVec3;
 use parry3d_f64::partitioning::{Bvh, BvhNode};
@@ -13,8 +14,6 @@ use super::proximity::closest_on_triangle;
 
 /// How far behind a face a point may lie and still be pushed out through it, metres.
 const DEPTH: f64 = 0.05;
-/// Canonical distance within which faces that look the same way belong to one part, metres.
-const SAME_PART: f64 = 0.12;
 /// [`DEPTH`] for other parts than the one the point was last near: the far side of a thin part, or another limb.
 const DEPTH_ELSEWHERE: f64 = 0.012;
 
@@ -28,6 +27,8 @@ enum Faces {
     All,
     /// Those that look another way than this normal.
     Across(DVec3),
+    /// Those of the part this face belongs to.
+    Around(u32),
 }
 
 /// The closest point of the body.
@@ -78,6 +79,17 @@ impl<'a> PosedBody<'a> {
         Self { collider, positions, face_normals, vertex_normals, tree, buried }
     }
 
+    /// Posed vertices, each moved along its normal by a share of its height, metres.
+    pub fn offset(&self, heights: &[f64], share: f64) -> Vec<DVec3> {
+        let outward = self.vertex_normals.iter().map(|normal| normal.normalize_or_zero());
+        self.positions
+            .iter()
+            .zip(outward)
+            .zip(heights)
+            .map(|((p, normal), height)| p + normal * (share * height))
+            .collect()
+    }
+
     /// The closest body point within `reach` metres, or none. `tracked`: the face found before, which speeds up the
     /// search and tells near sides from far ones.
     pub fn closest(&self, point: DVec3, tracked: Option<u32>, reach: f64) -> Option<Hit> {
@@ -88,6 +100,22 @@ impl<'a> PosedBody<'a> {
     pub fn across_crease(&self, point: DVec3, first: &Hit, reach: f64) -> Option<Hit> {
         let hit = self.search(point, Some(first.face), reach, Faces::Across(first.normal))?;
         (hit.normal.dot(first.normal) < CREASE).then_some(hit)
+    }
+
+    /// The closest point of the part that `face` belongs to, within `reach` metres.
+    pub fn closest_around(&self, point: DVec3, face: u32, reach: f64) -> Option<Hit> {
+        self.search(point, None, reach, Faces::Around(face))
+    }
+
+    /// Unit normal of a face.
+    pub fn normal(&self, face: u32) -> DVec3 {
+        self.face_normals[face as usize]
+    }
+
+    /// A point of a face, metres.
+    pub fn point(&self, face: u32, barycentric: [f64; 3]) -> DVec3 {
+        let corners = self.collider.faces[face as usize];
+        (0..3).map(|k| self.positions[corners[k] as usize] * barycentric[k]).sum()
     }
 
     /// Whether another part of the body lies within `gap` metres above a face, or the face is inside one.
@@ -103,6 +131,24 @@ impl<'a> PosedBody<'a> {
             known.set(Some(buried));
             buried
         })
+    }
+
+    /// Whether a point is inside the body, by the solid angle of its faces (generalised winding number, Jacobson et al. 2013): behind
+    /// the nearest face may be outside, where shells are open or folded.
+    pub fn encloses(&self, point: DVec3) -> bool {
+        let angle = |face: &[u32; 3]| {
+            let [a, b, c] = face.map(|i| self.positions[i as usize] - point);
+            let [la, lb, lc] = [a, b, c].map(DVec3::length);
+            let across = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
+            2.0 * a.dot(b.cross(c)).atan2(across)
+        };
+        self.collider.faces.iter().map(angle).sum::<f64>() > TAU
+    }
+
+    /// Whether the body passes into itself within `reach` metres of a point.
+    pub fn pinches(&self, point: DVec3, reach: f64) -> bool {
+        let around = bounds([point - reach, point + reach, point]);
+        self.tree.intersect_aabb(&around).any(|face| self.is_buried(face, 0.0))
     }
 
     /// Whether a segment passes through a face that cloth touches.
@@ -138,21 +184,20 @@ impl<'a> PosedBody<'a> {
         if !self.collider.touched[face as usize] {
             return None;
         }
-        let corners = self.collider.faces[face as usize];
-        let barycentric = closest_on_triangle(point, corners.map(|i| self.positions[i as usize]));
-        let foot: DVec3 = (0..3).map(|k| self.positions[corners[k] as usize] * barycentric[k]).sum();
+        let corners = self.collider.faces[face as usize].map(|i| self.positions[i as usize]);
+        let barycentric = closest_on_triangle(point, corners);
+        let foot = self.point(face, barycentric);
         let squared = foot.distance_squared(point);
         if squared >= best {
             return None;
         }
         let normal = self.pseudo_normal(face, barycentric);
-        let own = tracked.is_none_or(|old| {
-            let place = |face: u32| self.collider.rest[self.collider.faces[face as usize][0] as usize];
-            self.face_normals[old as usize].dot(normal) > 0.0 && place(old).distance(place(face)) < SAME_PART
-        });
+        let own = tracked
+            .is_none_or(|old| self.face_normals[old as usize].dot(normal) > 0.0 && self.collider.near(old, face));
         let behind = (point - foot).dot(normal) < 0.0;
         let refused = match faces {
             Faces::All => false,
+            Faces::Around(centre) => !self.collider.near(centre, face),
             // Behind a face turned all the way round is not a crease but the far side of a thin part.
             Faces::Across(first) => !(if behind { -CREASE } else { -1.0 }..CREASE).contains(&first.dot(normal)),
         };

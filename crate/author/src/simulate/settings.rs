@@ -28,6 +28,9 @@ pub struct Settings {
     pub drift: f64,
     /// How far a vertex that the body pinches may be moved at the end to lie outside of it, metres; a pose that needs more is left out.
     pub lift: f64,
+    /// Share of the vertices that may stay inside the body where it passes into itself: between an upper arm and the chest it is in,
+    /// no place is outside.
+    pub pinched: f64,
     /// Largest principal stretch a pose may have anywhere; above it the cloth is caught in the body.
     pub stretch_limit: f64,
     /// Cloth vertices sprung to the body, as a waistband or a collar is.
@@ -50,6 +53,7 @@ impl Default for Settings {
             residual: 1e-2,
             drift: 1e-4,
             lift: 0.005,
+            pinched: 0.0,
             stretch_limit: 1.5,
             attached: Vec::new(),
             attachment: 10.0,
@@ -72,6 +76,7 @@ impl Settings {
             ("residual", self.residual, 1e-9, 1e3),
             ("drift", self.drift, 0.0, 1.0),
             ("lift", self.lift, 0.0, 1.0),
+            ("pinched", self.pinched, 0.0, 1.0),
             ("stretch_limit", self.stretch_limit, 1.0, f64::MAX),
             ("attachment", self.attachment, 0.0, 1e6),
         ];

@@ -8,19 +8,23 @@ use glam::{DAffine3, DVec3};
 use super::cloth::Cloth;
 use super::collider::{Collider, blend};
 use super::contact::Pin;
+use super::cover::Cover;
 use super::distance::BodyDistance;
 use super::grain::warp;
 use super::hull::{hull, smooth};
 use super::material::Material;
 use super::newton::{Layout, Probe, Solver};
 use super::outcome::{Outcome, Status, stretch};
-use super::path::{body_frame, is_sound, motion, path};
+use super::path::{body_frame, is_sound, motion, path, to_body_frame};
 use super::posed::PosedBody;
 use super::settings::Settings;
 use super::transport::{adjacency, transport};
 use crate::garment::SKIN;
 use crate::rig::{Character, Garment, Pose, SkinWeights, Surface};
 use crate::{Error, Result};
+
+/// How far from where the body passes into itself cloth is pinched by it, metres.
+const PINCH: f64 = 0.025;
 
 /// Simulates one garment on one character. Built once, used from any number of threads.
 pub struct Simulator {
@@ -32,6 +36,7 @@ pub struct Simulator {
     collider: Collider,
     /// The body itself, which no kept pose may enter.
     body: BodyDistance,
+    cover: Cover,
     adjacency: Vec<Vec<u32>>,
     /// Skin of each attached vertex: that of the closest body point.
     attached: Vec<(usize, SkinWeights)>,
@@ -48,11 +53,12 @@ impl Simulator {
         smooth(&mut skin);
         let collider = Collider::new(&skin, &garment.mesh, settings.reach)?;
         let body = BodyDistance::new(character, &garment.mesh)?;
+        let cover = Cover::new(&body.collider, &collider);
         let layout = Arc::new(Layout::new(&cloth, &[])?);
         let attached = attach(&collider, &rest, &settings.attached);
         let adjacency = adjacency(&cloth);
         let character = Character { clips: Vec::new(), surface: Surface::default(), ..character.clone() };
-        Ok(Self { character, rest, cloth, layout, collider, body, adjacency, attached, settings })
+        Ok(Self { character, rest, cloth, layout, collider, body, cover, adjacency, attached, settings })
     }
 
     /// The template `T_C`: the garment at rest on the canonical body, metres in canonical space [n].
@@ -92,11 +98,14 @@ impl Simulator {
         let start = body_frame(&self.character, &self.character.canonical_pose());
         let positions = template.iter().map(|p| start.transform_point3(*p)).collect();
         let mut solver = Solver::new(&self.cloth, &self.layout, &self.settings, positions);
+        let end = self.character.skinning(&poses[self.settings.path_steps]);
+        let heights = self.cover.heights(&self.body.posed(pose), &self.collider, &end);
         let mut body = self.collider.pose(&self.character.skinning(&poses[0]));
-        for pair in poses.windows(2) {
+        for (step, pair) in poses.windows(2).enumerate() {
             transport(&mut solver, &body, &motion(&pair[0], &pair[1]), &self.adjacency);
             let skinning = self.character.skinning(&pair[1]);
-            body = self.collider.pose(&skinning);
+            let way = (step + 1) as f64 / self.settings.path_steps as f64;
+            body = self.collider.raised(&skinning, &heights, way);
             self.pin(&mut solver, template, &skinning);
             let mut share = 0.0;
             // Cloth that is held up by cloth gets more iterations.
@@ -122,8 +131,7 @@ impl Simulator {
         solver.pins = self.attached.iter().map(pin).collect();
     }
 
-    /// `distances`: signed, of every vertex to the body, metres.
-    fn judge(&self, outcome: &Outcome, distances: &[f64]) -> Status {
+    fn judge(&self, outcome: &Outcome, inside: Inside) -> Status {
         let reject = |reason| Status::Rejected { reason };
         let Outcome { residual, drift, crossings, stretch_max, .. } = *outcome;
         if !residual.is_finite() || outcome.positions.iter().any(|p| !p.is_finite()) {
@@ -139,11 +147,16 @@ impl Simulator {
         }
         // Vertices that were let go where the body pinches them. Leading them out of the crease afterwards was tried, by contact
         // planes and by springs towards its mouth: the first never came to rest, the second drew as many others in.
-        let inside = distances.iter().filter(|distance| **distance < 0.0);
-        let (count, least) = inside.fold((0, 0.0), |(count, least): (usize, f64), d| (count + 1, least.min(*d)));
-        if count > 0 {
+        let Inside { free, pinched, least } = inside;
+        if free > 0 {
             let depth = -1e3 * least;
-            return reject(format!("wanted no vertex inside the body, found {count}, {depth:.2} mm deep"));
+            return reject(format!("wanted no vertex inside the body, found {free}, {depth:.2} mm deep"));
+        }
+        if pinched as f64 > wanted.pinched * outcome.positions.len() as f64 {
+            let share = 100.0 * wanted.pinched;
+            return reject(format!(
+                "wanted at most {share} % of the vertices where the body passes into itself, found {pinched}"
+            ));
         }
         if crossings > 0 {
             return reject(format!("wanted no cloth through cloth, found {crossings} pairs of triangles that cross"));
@@ -154,20 +167,36 @@ impl Simulator {
         Status::Converged
     }
 
+    /// Counts vertices (body frame, metres) inside the body in `pose` (world).
+    fn inside(&self, pose: &Pose, placed: &[DVec3]) -> Inside {
+        let skin = self.collider.pose(&self.character.skinning(&to_body_frame(&self.character, pose)));
+        let signed = self.body.signed(pose, placed);
+        let inside = placed.iter().zip(signed).filter(|(_, distance)| *distance < 0.0);
+        inside.fold(Inside::default(), |Inside { free, pinched, least }, (vertex, distance)| {
+            match skin.pinches(*vertex, PINCH) {
+                true => Inside { free, pinched: pinched + 1, least },
+                false => Inside { free: free + 1, pinched, least: least.min(distance) },
+            }
+        })
+    }
+
     /// `to_body`: from the solver's space to the body frame of `pose`.
     fn outcome(&self, solver: Solver, relaxed: Probe, pose: &Pose, to_body: DAffine3) -> Outcome {
-        let mut placed: Vec<DVec3> = solver.positions.iter().map(|p| to_body.transform_point3(*p)).collect();
-        let lifted = self.body.lift(pose, &mut placed, self.settings.lift);
         let from_body = to_body.inverse();
-        let positions: Vec<DVec3> = match lifted {
-            0 => solver.positions,
-            _ => placed.iter().map(|p| from_body.transform_point3(*p)).collect(),
-        };
+        let crossings = |positions: &[DVec3]| self.cloth.elements.crossings(positions).len();
+        let at_rest: Vec<DVec3> = solver.positions.iter().map(|p| to_body.transform_point3(*p)).collect();
+        let mut placed = at_rest.clone();
+        let mut lifted = self.body.lift(pose, &mut placed, self.settings.lift);
+        let mut positions: Vec<DVec3> = placed.iter().map(|p| from_body.transform_point3(*p)).collect();
+        // Between two parts of the body what is lifted from one may be laid on the wrong side of a fold.
+        if lifted == 0 || crossings(&positions) > crossings(&solver.positions) {
+            (lifted, placed, positions) = (0, at_rest, solver.positions);
+        }
         let (stretch_p99, stretch_max) = stretch(&self.cloth, &positions);
         let mut outcome = Outcome {
             residual: relaxed.residual,
             drift: relaxed.drift,
-            crossings: self.cloth.elements.crossings(&positions).len(),
+            crossings: crossings(&positions),
             stretch_p99,
             stretch_max,
             least_distance: relaxed.least_distance,
@@ -176,7 +205,7 @@ impl Simulator {
             status: Status::Converged,
             positions,
         };
-        outcome.status = self.judge(&outcome, &self.body.signed(pose, &placed));
+        outcome.status = self.judge(&outcome, self.inside(pose, &placed));
         outcome
     }
 
@@ -198,6 +227,17 @@ impl Simulator {
             status: Status::Rejected { reason },
         }
     }
+}
+
+/// Vertices inside the body.
+#[derive(Default)]
+struct Inside {
+    /// Those with a way out.
+    free: usize,
+    /// Those where the body passes into itself.
+    pinched: usize,
+    /// Least signed distance of the former, metres.
+    least: f64,
 }
 
 /// Attached vertices with the skin of the body point closest to them.

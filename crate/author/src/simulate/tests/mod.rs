@@ -11,3 +11,4 @@ mod obstacle;
 mod pose;
 mod scene;
 mod sphere;
+mod through;

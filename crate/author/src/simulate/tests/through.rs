@@ -1,0 +1,89 @@
+//! Bodies that pass through their own skin and through themselves.
+
+use glam::{DAffine3, DQuat, DVec3};
+
+use super::scene::{legs, rigid, skirt, sphere};
+use crate::garment::SKIN;
+use crate::rig::{Character, Garment, Mesh, Pose};
+use crate::simulate::collider::Collider;
+use crate::simulate::cover::Cover;
+use crate::simulate::hull::hull;
+use crate::simulate::{BodyDistance, Material, Settings, Simulator, Status};
+
+/// Nothing is inside an open shell's mouth, though it is behind the nearest face.
+#[test]
+fn behind_an_open_shell_is_not_inside() {
+    let mut body = sphere(0.3, 4);
+    let bowl = body.triangles.iter().filter(|triangle| triangle.iter().all(|i| body.positions[*i as usize].y > -1e-9));
+    body.triangles = bowl.copied().collect();
+    let cloth = Mesh { positions: vec![DVec3::new(0.0, 0.35, 0.0)], triangles: Vec::new() };
+    let character = rigid(body);
+    let distance = BodyDistance::new(&character, &cloth).unwrap();
+    let signed =
+        distance.signed(&character.canonical_pose(), &[DVec3::new(0.0, -0.05, 0.0), DVec3::new(0.0, 0.25, 0.0)]);
+    assert!(signed[0] > 0.0 && signed[1] < 0.0, "{signed:?}");
+}
+
+/// A ball within a ball, on a joint of its own.
+fn nested() -> Character {
+    let mut character = rigid(sphere(0.2, 4));
+    let mut inner = sphere(0.05, 3);
+    let first = character.body.positions.len() as u32;
+    inner.positions.iter_mut().for_each(|place| place.x += 0.12);
+    character.joints.push(crate::rig::Joint { name: "inner".into(), parent: Some(0), ..character.joints[0].clone() });
+    character.weights.extend(vec![vec![(1, 1.0)]; inner.positions.len()]);
+    character.body.positions.extend(&inner.positions);
+    character.body.triangles.extend(inner.triangles.iter().map(|triangle| triangle.map(|i| i + first)));
+    character
+}
+
+#[test]
+fn skin_is_raised_over_what_comes_out_through_it() {
+    let character = nested();
+    let (body, skin) = (&character, hull(&character, SKIN).unwrap());
+    let [body, skin] = [body, &skin].map(|mesh| Collider::of_joints(mesh, &[true, true]));
+    let cover = Cover::new(&body, &skin);
+    let out = |shift: f64| {
+        let skinning = [DAffine3::IDENTITY, DAffine3::from_translation(DVec3::X * shift)];
+        let posed = body.pose(&skinning);
+        let heights = cover.heights(&posed, &skin, &skinning);
+        let raised = skin.raised(&skinning, &heights, 1.0);
+        let spots = (0..body.faces.len() as u32).map(|face| posed.point(face, [1.0 / 3.0; 3]));
+        let highest =
+            spots.filter_map(|spot| raised.closest(spot, None, 0.1)).map(|hit| hit.distance).fold(-1.0, f64::max);
+        (heights.iter().filter(|height| **height > 0.0).count(), highest)
+    };
+    assert_eq!(out(0.0).0, 0, "nothing comes out at rest");
+    assert_eq!(out(-0.1).0, 0, "nothing comes out inwards");
+    let (raised, highest) = out(0.055);
+    // Without raising, the inner ball is 25 mm out.
+    assert!(raised > 10 && highest < 0.006, "{raised} raised, still {:.1} mm out", 1e3 * highest);
+}
+
+/// Both knees drawn up until the thighs are in the belly.
+fn crouched(character: &Character) -> Pose {
+    let mut pose = character.canonical_pose();
+    for thigh in [1, 3] {
+        let about = DAffine3::from_translation(pose[thigh].translation);
+        let turn = about * DAffine3::from_quat(DQuat::from_rotation_x(-2.3)) * about.inverse();
+        pose[thigh..thigh + 2].iter_mut().for_each(|joint| *joint = turn * *joint);
+    }
+    pose
+}
+
+#[test]
+fn cloth_between_parts_that_pass_through_each_other_may_be_kept() {
+    let character = legs();
+    let settings = |pinched| Settings { attached: (0..30).collect(), pinched, ..Settings::default() };
+    let garment = Garment { mesh: skirt(30, 9), ..Garment::default() };
+    let outcome = |pinched| {
+        let simulator = Simulator::new(&character, &garment, Material::default(), settings(pinched)).unwrap();
+        simulator.simulate(&simulator.drape().unwrap(), &crouched(&character))
+    };
+    let [left_out, kept] = [0.0, 0.05].map(outcome);
+    assert!(left_out.positions == kept.positions);
+    let Status::Rejected { reason } = &left_out.status else { panic!("nothing is pinched") };
+    assert!(reason.starts_with("wanted at most 0 % of the vertices"), "{reason}");
+    assert!(kept.converged(), "{:?}", kept.status);
+    assert!(Simulator::new(&character, &garment, Material::default(), settings(7.0)).is_err());
+}
