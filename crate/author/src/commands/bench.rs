@@ -4,20 +4,25 @@ mod gpu;
 
 use super::{Device, Network};
 use anyhow::Result;
-use ctsn_author::dataset::{Sample, Setup};
+use ctsn_author::dataset::{Dataset, Sample, Setup};
 use ctsn_author::synthetic;
 use ctsn_author::train::{Settings, Trainer};
 use ctsn_core::cpu::{Level, skin::skin};
 use ctsn_core::device::Space;
-use ctsn_core::model::{HostModel, Skin, Storage};
+use ctsn_core::model::{HostModel, Sizes, Skin, Storage};
 use ctsn_core::pose::BodyFrame;
 use ctsn_core::{Predictor, Streams};
 use std::path::PathBuf;
 use std::time::Instant;
 
-/// Time predictions and training steps of a model of given size with random weights
+/// Time predictions and training steps, of a trained model or of one of given size with random weights
 #[derive(clap::Args)]
 pub struct Arguments {
+    /// Model file to time, with DATA; without one, a model of made-up cloth
+    #[arg(requires = "data", conflicts_with_all = ["vertices", "joints", "write_model", "embedding", "basis", "layers", "heads", "features"])]
+    model: Option<PathBuf>,
+    /// Dataset folder the model was trained on, for poses
+    data: Option<PathBuf>,
     /// Cloth vertices, about
     #[arg(long, default_value_t = 5000)]
     vertices: usize,
@@ -41,27 +46,40 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> Result<()> {
-    let Arguments { vertices, joints, runs, .. } = *arguments;
-    let architecture = arguments.network.architecture();
-    let (setup, samples) = synthetic::dataset(vertices, joints, 16);
-    let samples: Vec<_> = samples.iter().collect();
-    let mut model = ctsn_author::train::initial(&setup, &samples, architecture, 1)?;
-    // Where the cloth is predicted is where the repair must look for the body.
-    let worn = samples.iter().map(|sample| worn(&model, sample)).collect::<Result<Vec<_>>>()?;
-    model.body = Some(ctsn_author::body::body(&setup, &worn.iter().collect::<Vec<_>>())?);
+    let (model, setup, samples) = match (&arguments.model, &arguments.data) {
+        (Some(path), Some(data)) => {
+            let Dataset { setup, samples, .. } = Dataset::read(data)?;
+            (super::model(path)?, setup, samples)
+        }
+        _ => made_up(arguments)?,
+    };
     if let Some(path) = &arguments.write_model {
         return Ok(ctsn_author::dataset::write(path, &model.to_bytes(Storage::F32))?);
     }
-    println!("n = {}, J = {joints}, {architecture:?}", model.sizes.vertices);
+    let Sizes { vertices, joints, embedding, basis, features, .. } = model.sizes;
+    let layers = model.layers.len();
+    println!("n = {vertices}, J = {joints}, m = {embedding}, k = {basis}, L = {layers}, F = {features}");
     let poses: Vec<&[f32]> = samples.iter().map(|sample| sample.joints.as_slice()).collect();
+    let runs = arguments.runs.max(1);
     match arguments.device {
-        Device::Cpu => cpu(&model, &poses, runs.max(1))?,
-        Device::Gpu => gpu::run(&model, &poses, runs.max(1))?,
+        Device::Cpu => cpu(&model, &poses, runs)?,
+        Device::Gpu => gpu::run(&model, &poses, runs)?,
     }
     if arguments.train {
-        train(model, &setup, &samples)?;
+        train(model, &setup, &samples.iter().collect::<Vec<_>>())?;
     }
     Ok(())
+}
+
+/// A model of made-up cloth, and what it wears it on.
+fn made_up(arguments: &Arguments) -> Result<(HostModel, Setup, Vec<Sample>)> {
+    let (setup, samples) = synthetic::dataset(arguments.vertices, arguments.joints, 16);
+    let all: Vec<_> = samples.iter().collect();
+    let mut model = ctsn_author::train::initial(&setup, &all, arguments.network.architecture(), 1)?;
+    // Where the cloth is predicted is where the repair must look for the body.
+    let worn = samples.iter().map(|sample| worn(&model, sample)).collect::<Result<Vec<_>>>()?;
+    model.body = Some(ctsn_author::body::body(&setup, &worn.iter().collect::<Vec<_>>())?);
+    Ok((model, setup, samples))
 }
 
 /// A sample with plainly skinned cloth for its truth: that is about what an untrained network predicts.
