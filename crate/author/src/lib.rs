@@ -17,5 +17,6 @@ pub mod simulate;
 pub mod study;
 pub mod synthetic;
 pub mod train;
+mod triangle;
 
 pub use error::{Error, Result};

@@ -5,6 +5,7 @@ use super::cut::{Piece, compact};
 use super::field::Field;
 use super::opening::Opening;
 use super::quality::least_angle;
+use crate::triangle;
 use glam::DVec3;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -13,7 +14,8 @@ const GONE: [u32; 3] = [u32::MAX; 3];
 
 /// Remeshes to an edge length that gives about `target` vertices.
 pub(super) fn remesh(piece: Piece, field: &Field, openings: &[Opening], target: usize) -> Piece {
-    let area: f64 = piece.mesh.triangles.iter().map(|t| area(t.map(|v| piece.mesh.positions[v as usize]))).sum();
+    let area: f64 =
+        piece.mesh.triangles.iter().map(|t| triangle::area(t.map(|v| piece.mesh.positions[v as usize]))).sum();
     // An even triangulation has one vertex per two equilateral triangles, √3/2 L² of surface.
     let mut edge = (area / (target as f64 * 0.866)).sqrt();
     let mut sheet = Sheet::new(piece, field, openings);
@@ -42,11 +44,6 @@ enum Better {
     Valence,
     /// A larger smallest angle.
     Angle,
-}
-
-/// Area of a triangle.
-fn area([a, b, c]: [DVec3; 3]) -> f64 {
-    (b - a).cross(c - a).length() / 2.0
 }
 
 /// A mesh under edit.

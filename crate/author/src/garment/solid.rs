@@ -3,6 +3,7 @@
 
 use super::field::Field;
 use super::pattern::Pattern;
+use crate::triangle::closest_point;
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -72,7 +73,7 @@ impl Field {
                         if point.distance_squared(centre) >= bound * bound {
                             continue;
                         }
-                        let distance = point.distance(closest_point(triangle, point)) as f32;
+                        let distance = point.distance(closest_point(point, *triangle)) as f32;
                         if distance < cell.body {
                             (cell.body, cell.is_covered) = (distance, covered);
                         }
@@ -121,35 +122,4 @@ impl Field {
         }
         near.iter().zip(outside).map(|(near, outside)| !outside && near.is_covered && near.body > wall as f32).collect()
     }
-}
-
-/// The point of a triangle nearest to `p` (by its Voronoi regions).
-pub(super) fn closest_point(&[a, b, c]: &[DVec3; 3], p: DVec3) -> DVec3 {
-    let (ab, ac, ap) = (b - a, c - a, p - a);
-    let (d1, d2) = (ab.dot(ap), ac.dot(ap));
-    if d1 <= 0.0 && d2 <= 0.0 {
-        return a;
-    }
-    let (d3, d4) = (ab.dot(p - b), ac.dot(p - b));
-    if d3 >= 0.0 && d4 <= d3 {
-        return b;
-    }
-    let (d5, d6) = (ab.dot(p - c), ac.dot(p - c));
-    if d6 >= 0.0 && d5 <= d6 {
-        return c;
-    }
-    let vc = d1 * d4 - d3 * d2;
-    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
-        return a + ab * (d1 / (d1 - d3));
-    }
-    let vb = d5 * d2 - d1 * d6;
-    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
-        return a + ac * (d2 / (d2 - d6));
-    }
-    let va = d3 * d6 - d5 * d4;
-    if va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0 {
-        return b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)));
-    }
-    let scale = 1.0 / (va + vb + vc);
-    a + ab * (vb * scale) + ac * (vc * scale)
 }

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::rig::{Joint, Mesh, Surface};
+use crate::triangle::{closest_point, solid_angle};
 use glam::{DAffine3, DVec2};
 
 /// Adds a capsule from `a` to `b` weighted to one joint.
@@ -90,14 +91,9 @@ fn clearance(character: &Character, mesh: &Mesh) -> (f64, f64) {
     let corners = |t: &[u32; 3]| t.map(|v| character.body.positions[v as usize]);
     let body: Vec<[DVec3; 3]> = character.body.triangles.iter().map(corners).collect();
     let measure = |p: &DVec3| {
-        let distance = |t: &[DVec3; 3]| solid::closest_point(t, *p).distance(*p);
-        let angle = |t: &[DVec3; 3]| {
-            let [a, b, c] = t.map(|corner| (corner - *p).normalize_or_zero());
-            let below = 1.0 + a.dot(b) + b.dot(c) + c.dot(a);
-            a.dot(b.cross(c)).atan2(below) / std::f64::consts::TAU
-        };
+        let distance = |t: &[DVec3; 3]| closest_point(*p, *t).distance(*p);
         let least = body.iter().map(distance).fold(f64::INFINITY, f64::min);
-        (least, body.iter().map(angle).sum::<f64>())
+        (least, body.iter().map(|corners| solid_angle(*p, *corners)).sum::<f64>() / (2.0 * std::f64::consts::TAU))
     };
     mesh.positions.iter().map(measure).fold((f64::INFINITY, 0.0), |all, one| (all.0.min(one.0), all.1.max(one.1)))
 }

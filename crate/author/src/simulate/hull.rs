@@ -8,6 +8,7 @@ use super::collider::{Collider, check};
 use super::posed::PosedBody;
 use crate::garment;
 use crate::rig::{Character, Mesh, SkinWeights};
+use crate::triangle;
 use crate::{Error, Result};
 
 /// What stays between the skin and the body, metres.
@@ -49,7 +50,7 @@ pub fn hull(character: &Character, vertices: usize) -> Result<Character> {
 /// Area of a mesh, square metres.
 fn area(mesh: &Mesh) -> f64 {
     let corners = mesh.triangles.iter().map(|triangle| triangle.map(|i| mesh.positions[i as usize]));
-    corners.map(|[a, b, c]| 0.5 * (b - a).cross(c - a).length()).sum()
+    corners.map(triangle::area).sum()
 }
 
 /// The outer skin of all of a body.

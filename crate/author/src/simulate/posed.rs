@@ -10,7 +10,7 @@ use parry3d_f64::partitioning::{Bvh, BvhNode};
 use super::burial::winding;
 use super::collider::{Collider, bounds};
 use super::crossing::pierces;
-use super::proximity::closest_on_triangle;
+use crate::triangle;
 
 /// How far behind a face a point may lie and still be pushed out through it, metres.
 const DEPTH: f64 = 0.05;
@@ -114,8 +114,7 @@ impl<'a> PosedBody<'a> {
 
     /// A point of a face, metres.
     pub fn point(&self, face: u32, barycentric: [f64; 3]) -> DVec3 {
-        let corners = self.collider.faces[face as usize];
-        (0..3).map(|k| self.positions[corners[k] as usize] * barycentric[k]).sum()
+        triangle::point(self.collider.faces[face as usize].map(|i| self.positions[i as usize]), barycentric)
     }
 
     /// Whether another part of the body lies within `gap` metres above a face, or the face is inside one.
@@ -136,12 +135,7 @@ impl<'a> PosedBody<'a> {
     /// Whether a point is inside the body, by the solid angle of its faces (generalised winding number, Jacobson et al. 2013): behind
     /// the nearest face may be outside, where shells are open or folded.
     pub fn encloses(&self, point: DVec3) -> bool {
-        let angle = |face: &[u32; 3]| {
-            let [a, b, c] = face.map(|i| self.positions[i as usize] - point);
-            let [la, lb, lc] = [a, b, c].map(DVec3::length);
-            let across = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
-            2.0 * a.dot(b.cross(c)).atan2(across)
-        };
+        let angle = |face: &[u32; 3]| triangle::solid_angle(point, face.map(|i| self.positions[i as usize]));
         self.collider.faces.iter().map(angle).sum::<f64>() > TAU
     }
 
@@ -185,7 +179,7 @@ impl<'a> PosedBody<'a> {
             return None;
         }
         let corners = self.collider.faces[face as usize].map(|i| self.positions[i as usize]);
-        let barycentric = closest_on_triangle(point, corners);
+        let barycentric = triangle::closest(point, corners);
         let foot = self.point(face, barycentric);
         let squared = foot.distance_squared(point);
         if squared >= best {

@@ -2,6 +2,7 @@
 //! barrier `-(d - d̂)² ln(d/d̂)` below `d̂` (Li et al. 2020, Incremental Potential Contact), and the time of impact by additive
 //! continuous collision detection (Li et al. 2021, Codimensional IPC, §5).
 
+use crate::triangle;
 use glam::DVec3;
 
 /// Share of a pair's distance that a move must leave.
@@ -28,7 +29,7 @@ impl Pair {
     pub fn shortest(&self, x: &[DVec3; 4]) -> ([f64; 4], DVec3) {
         let weights = match self {
             Self::VertexTriangle(_) => {
-                let [u, v, w] = closest_on_triangle(x[0], [x[1], x[2], x[3]]);
+                let [u, v, w] = triangle::closest(x[0], [x[1], x[2], x[3]]);
                 [1.0, -u, -v, -w]
             }
             Self::EdgeEdge(_) => {
@@ -99,45 +100,6 @@ pub(super) fn barrier(d: f64, offset: f64) -> [f64; 3] {
     let (log, gap) = ((d / offset).ln(), d - offset);
     let ratio = gap / d;
     [-gap * gap * log, -2.0 * gap * log - gap * ratio, -2.0 * log - 4.0 * ratio + ratio * ratio]
-}
-
-/// Barycentric coordinates of the closest point; exact zeros on edges and corners (Ericson, Real-Time Collision
-/// Detection §5.1.5).
-pub(super) fn closest_on_triangle(p: DVec3, [a, b, c]: [DVec3; 3]) -> [f64; 3] {
-    let (ab, ac) = (b - a, c - a);
-    let ap = p - a;
-    let (d1, d2) = (ab.dot(ap), ac.dot(ap));
-    if d1 <= 0.0 && d2 <= 0.0 {
-        return [1.0, 0.0, 0.0];
-    }
-    let bp = p - b;
-    let (d3, d4) = (ab.dot(bp), ac.dot(bp));
-    if d3 >= 0.0 && d4 <= d3 {
-        return [0.0, 1.0, 0.0];
-    }
-    let vc = d1 * d4 - d3 * d2;
-    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
-        let v = d1 / (d1 - d3);
-        return [1.0 - v, v, 0.0];
-    }
-    let cp = p - c;
-    let (d5, d6) = (ab.dot(cp), ac.dot(cp));
-    if d6 >= 0.0 && d5 <= d6 {
-        return [0.0, 0.0, 1.0];
-    }
-    let vb = d5 * d2 - d1 * d6;
-    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
-        let w = d2 / (d2 - d6);
-        return [1.0 - w, 0.0, w];
-    }
-    let va = d3 * d6 - d5 * d4;
-    if va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0 {
-        let w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-        return [0.0, 1.0 - w, w];
-    }
-    let scale = 1.0 / (va + vb + vc);
-    let (v, w) = (vb * scale, vc * scale);
-    [1.0 - v - w, v, w]
 }
 
 /// Where along each of two segments (0 to 1) they come closest (Ericson §5.1.9). Either may have no length.

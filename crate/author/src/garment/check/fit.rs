@@ -2,9 +2,10 @@
 
 use super::{Findings, list};
 use crate::Result;
-use crate::garment::{SKIN, hull, solid::closest_point};
+use crate::garment::{SKIN, hull};
 use crate::gltf::Source;
 use crate::rig::{Character, Garment, Mesh};
+use crate::triangle::closest_point;
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -77,7 +78,7 @@ fn places(character: &Character, mesh: &Mesh) -> Result<Vec<Place>> {
     let place = |p: &DVec3| {
         let mut best = (f64::INFINITY, DVec3::ZERO, DVec3::Y);
         for (corners, normal) in &faces {
-            let near = closest_point(corners, *p);
+            let near = closest_point(*p, *corners);
             let squared = near.distance_squared(*p);
             if squared < best.0 {
                 best = (squared, near, *normal);
