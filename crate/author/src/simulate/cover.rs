@@ -15,7 +15,8 @@ const DEEPEST: f64 = 0.05;
 const FURTHEST: f64 = 0.04;
 /// Cosine of the greatest angle between the way from the skin to a point and the skin's normal: the skin does not end there.
 const UPRIGHT: f64 = 0.9;
-/// The skin is raised where points are further out than this, metres: cloth keeps its thickness from it.
+/// What may stay outside of the skin, metres: cloth keeps its thickness from it. From there to twice as far out the skin is raised more
+/// and more, without a jump, until it covers the point.
 const SLACK: f64 = 0.004;
 /// Rounds of raising: corners move along their own normals, which covers a point between them only in part.
 const ROUNDS: usize = 2;
@@ -58,7 +59,7 @@ impl Cover {
                 let place = body.point(point.face, point.barycentric);
                 let hit = posed.closest_around(place, point.skin, FURTHEST)?;
                 (hit.distance > SLACK && hit.normal.dot(posed.normal(hit.face)) > UPRIGHT)
-                    .then_some((hit.face, hit.distance))
+                    .then_some((hit.face, hit.distance.min(2.0 * (hit.distance - SLACK))))
             };
             let out: Vec<(u32, f64)> = self.points.iter().filter_map(out).collect();
             let before = heights.clone();
