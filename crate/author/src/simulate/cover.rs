@@ -62,6 +62,9 @@ impl Cover {
                     .then_some((hit.face, hit.distance.min(2.0 * (hit.distance - SLACK))))
             };
             let out: Vec<(u32, f64)> = self.points.iter().filter_map(out).collect();
+            if out.is_empty() {
+                break;
+            }
             let before = heights.clone();
             for (face, height) in out {
                 for corner in skin.faces[face as usize].map(|corner| corner as usize) {
