@@ -103,7 +103,8 @@ impl Neighbourhood {
         let pairs = &mut self.pairs;
         pairs.clear();
         let mut consider = |pair: Pair| {
-            if pair.distance(x) < offset + 2.0 * SLACK + pair.approach(motion) {
+            let reach = offset + 2.0 * SLACK + pair.approach(motion);
+            if pair.gap(x) < reach && pair.distance(x) < reach {
                 pairs.push(pair);
             }
         };

@@ -45,6 +45,25 @@ impl Pair {
         self.shortest(&self.vertices().map(|i| x[i])).1.length()
     }
 
+    /// What the boxes around the elements leave between them at the positions `x` [n], metres: at most the distance, and quickly found.
+    pub fn gap(&self, x: &[DVec3]) -> f64 {
+        let at = self.vertices().map(|i| x[i]);
+        let (first, second) = at.split_at(self.split());
+        let bounds = |points: &[DVec3]| {
+            points.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(*p), high.max(*p)))
+        };
+        let ((low, high), (other_low, other_high)) = (bounds(first), bounds(second));
+        (other_low - high).max(low - other_high).max(DVec3::ZERO).length()
+    }
+
+    /// How many of the four vertices the first element has.
+    fn split(&self) -> usize {
+        match self {
+            Self::VertexTriangle(_) => 1,
+            Self::EdgeEdge(_) => 2,
+        }
+    }
+
     /// How far the two elements can come nearer when the vertices move by `motion` [n], metres: their common part left out.
     pub fn approach(&self, motion: &[DVec3]) -> f64 {
         self.lengths(&self.relative(motion))
@@ -57,10 +76,7 @@ impl Pair {
     }
 
     fn lengths(&self, moves: &[DVec3; 4]) -> f64 {
-        let first = match self {
-            Self::VertexTriangle(_) => 1,
-            Self::EdgeEdge(_) => 2,
-        };
+        let first = self.split();
         let longest = |moves: &[DVec3]| moves.iter().map(|m| m.length_squared()).fold(0.0, f64::max).sqrt();
         longest(&moves[..first]) + longest(&moves[first..])
     }
