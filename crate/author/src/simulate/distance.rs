@@ -18,6 +18,7 @@ const MOVES: usize = 8;
 /// A body prepared for distance queries.
 pub struct BodyDistance {
     character: Character,
+    /// The body's own triangles, not its skin.
     pub(super) collider: Collider,
 }
 
