@@ -95,7 +95,8 @@ impl<'a> Run<'a> {
     }
 }
 
-/// The poses and twins of the request's shard.
+/// The poses and twins of the request's shard, in an order (bits of the index reversed) by which a run that is cut off has done some of
+/// every clip.
 fn tasks<'a>(request: &Request<'a>, poses: usize, folder: &Path) -> Vec<Task<'a>> {
     let clips = request.character.clips.iter().enumerate();
     let frames = clips
@@ -104,7 +105,9 @@ fn tasks<'a>(request: &Request<'a>, poses: usize, folder: &Path) -> Vec<Task<'a>
     let chosen = noise::spread(poses, request.poses.unwrap_or(poses));
     let twins = noise::spread(chosen.len(), request.twins);
     let mut tasks = Vec::new();
-    for (index, at) in chosen.into_iter().enumerate().filter(|(index, _)| request.shard.holds(*index)) {
+    let mut chosen: Vec<(usize, usize)> = chosen.into_iter().enumerate().collect();
+    chosen.sort_by_key(|(index, _)| index.reverse_bits());
+    for (index, at) in chosen.into_iter().filter(|(index, _)| request.shard.holds(*index)) {
         let (clip, frame, pose) = frames[at];
         tasks.push(Task { clip, frame, twin: false, pose, path: pose_path(folder, clip, frame) });
         if twins.binary_search(&index).is_ok() {

@@ -66,6 +66,19 @@ fn request<'a>(character: &'a Character, garment: &'a Garment) -> Request<'a> {
 }
 
 #[test]
+fn a_run_that_is_cut_off_has_done_some_of_every_clip() {
+    let (mut character, garment) = scene();
+    let poses = vec![character.canonical_pose(); 12];
+    character.clips = (0..10).map(|i| Clip { name: format!("clip {i}"), rate: 7.3, poses: poses.clone() }).collect();
+    let all = tasks(&request(&character, &garment), 120, Path::new(""));
+    assert_eq!(all.iter().map(|task| (task.clip, task.frame)).collect::<std::collections::BTreeSet<_>>().len(), 120);
+    for part in all.chunks(all.len() / 4) {
+        let clips: std::collections::BTreeSet<usize> = part.iter().map(|task| task.clip).collect();
+        assert_eq!(clips.len(), 10, "a quarter of the poses is of {clips:?}");
+    }
+}
+
+#[test]
 fn shards_share_the_poses_evenly() {
     let shards: Vec<Shard> = (0..3).map(|i| format!("{i}/3").parse().unwrap()).collect();
     for pose in 0..100 {
