@@ -139,10 +139,10 @@ impl<'a> PosedBody<'a> {
         self.collider.faces.iter().map(angle).sum::<f64>() > TAU
     }
 
-    /// Whether the body passes into itself within `reach` metres of a point.
-    pub fn pinches(&self, point: DVec3, reach: f64) -> bool {
+    /// Whether a face within `reach` metres of a point is buried: the body passes into itself there.
+    pub fn pinches(&self, point: DVec3, reach: f64, gap: f64) -> bool {
         let around = bounds([point - reach, point + reach, point]);
-        self.tree.intersect_aabb(&around).any(|face| self.is_buried(face, 0.0))
+        self.tree.intersect_aabb(&around).any(|face| self.is_buried(face, gap))
     }
 
     /// Whether a segment passes through a face that cloth touches.

@@ -173,7 +173,7 @@ impl Simulator {
         let signed = self.body.signed(pose, placed);
         let inside = placed.iter().zip(signed).filter(|(_, distance)| *distance < 0.0);
         inside.fold(Inside::default(), |Inside { free, pinched, least }, (vertex, distance)| {
-            match skin.pinches(*vertex, PINCH) {
+            match skin.pinches(*vertex, PINCH, self.settings.thickness) {
                 true => Inside { free, pinched: pinched + 1, least },
                 false => Inside { free: free + 1, pinched, least: least.min(distance) },
             }

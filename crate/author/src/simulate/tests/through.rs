@@ -24,6 +24,18 @@ fn behind_an_open_shell_is_not_inside() {
     assert!(signed[0] > 0.0 && signed[1] < 0.0, "{signed:?}");
 }
 
+#[test]
+fn only_a_body_that_passes_into_itself_pinches() {
+    let pinched = |character: &Character| {
+        let body = Collider::of_joints(character, &vec![true; character.joints.len()]);
+        let posed = body.pose(&character.skinning(&character.canonical_pose()));
+        body.rest.iter().filter(|place| posed.pinches(**place, 0.025, 0.004)).count()
+    };
+    assert_eq!(pinched(&rigid(sphere(0.3, 4))), 0);
+    // Thighs and pelvis are shells that overlap.
+    assert!(pinched(&legs()) > 10);
+}
+
 /// A ball within a ball, on a joint of its own.
 fn nested() -> Character {
     let mut character = rigid(sphere(0.2, 4));
