@@ -1,7 +1,7 @@
 // npm run data: simulates the project's pairs of character and garment into out/pairs, with a report and a contact sheet of each.
 //   npm run data                           all ten pairs, 80 poses each
 //   npm run data -- andy-tshirt fox-cape   only these
-//   npm run data -- --full                 three of them at full size, 1,250 poses each
+//   npm run data -- --full                 three of them at full size, 1,300 poses each
 //   npm run data -- --on figure.glb --kind tshirt   a character of your own, with its own clips
 // Everything already there is kept: a run that was cut off goes on where it stopped.
 import { existsSync, mkdirSync } from 'node:fs';
@@ -23,7 +23,7 @@ const PAIRS = {
   'box-sheet': {},
 };
 /** Poses of a dataset, evenly spread over the frames of its clips at `RATE` a second. A full one goes into the same folder. */
-const POSES = { small: 80, full: 1250 };
+const POSES = { small: 80, full: 1300 };
 const RATE = 10;
 const VERTICES = '2100';
 /** Poses simulated twice for the noise floor. */

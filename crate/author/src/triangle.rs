@@ -7,6 +7,11 @@ pub fn area([a, b, c]: [DVec3; 3]) -> f64 {
     0.5 * (b - a).cross(c - a).length()
 }
 
+/// Signed volume of the tetrahedron under it, apex at the origin: over a closed surface that faces outwards, what it encloses.
+pub fn volume([a, b, c]: [DVec3; 3]) -> f64 {
+    a.dot(b.cross(c)) / 6.0
+}
+
 /// The point with these barycentric coordinates.
 pub fn point([a, b, c]: [DVec3; 3], [u, v, w]: [f64; 3]) -> DVec3 {
     a * u + b * v + c * w

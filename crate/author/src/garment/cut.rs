@@ -4,6 +4,7 @@
 use super::field::Field;
 use super::opening::Opening;
 use crate::rig::Mesh;
+use crate::triangle;
 use fast_surface_nets::ndshape::RuntimeShape;
 use fast_surface_nets::{SurfaceNetsBuffer, surface_nets};
 use glam::{DVec3, Vec3};
@@ -39,18 +40,12 @@ fn zero_set(field: &Field) -> Piece {
     let positions = buffer.positions.iter().map(place).collect();
     let mut triangles: Vec<[u32; 3]> = buffer.indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect();
     let mut mesh = Mesh { positions, triangles: Vec::new() };
-    let outward: f64 = triangles.iter().map(|t| volume(&mesh, *t)).sum();
-    if outward < 0.0 {
+    let volume = |t: &[u32; 3]| triangle::volume(t.map(|i| mesh.positions[i as usize]));
+    if triangles.iter().map(volume).sum::<f64>() < 0.0 {
         triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
     }
     mesh.triangles = triangles;
     Piece { rim: vec![None; mesh.positions.len()], mesh }
-}
-
-/// Six times the signed volume of the tetrahedron under a triangle.
-fn volume(mesh: &Mesh, triangle: [u32; 3]) -> f64 {
-    let [a, b, c] = triangle.map(|i| mesh.positions[i as usize]);
-    a.dot(b.cross(c))
 }
 
 /// Cuts at every opening in turn.

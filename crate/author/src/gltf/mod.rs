@@ -13,8 +13,8 @@ mod write;
 pub use weld::Source;
 pub use write::{Appearance, write_character, write_garment};
 
-use crate::rig::{Character, Clip, Garment, SkinWeights};
-use crate::{Error, Result};
+use crate::rig::{Character, Clip, Garment, Mesh, SkinWeights};
+use crate::{Error, Result, triangle};
 use file::File;
 use glam::{DAffine3, DVec3};
 use nodes::Nodes;
@@ -22,7 +22,7 @@ use part::Part;
 use skeleton::Skeleton;
 use std::collections::HashSet;
 use std::path::Path;
-use weld::Soup;
+use weld::{Soup, Welded};
 
 /// Result of the reading stages; the reason says what was wanted and what was found, the caller adds the path.
 type Read<T> = std::result::Result<T, String>;
@@ -30,7 +30,7 @@ type Read<T> = std::result::Result<T, String>;
 /// Reads a rigged character and its clips, sampled at `rate` poses per second.
 ///
 /// All skinned meshes become one body; the skin with most vertices sets the canonical space. Vertices without weights take
-/// those of the nearest vertex that has some (the hip's, when none has). Meshes without a skin, morph targets and
+/// those of the nearest vertex that has some (the hip's, when none has). A body that faces inwards is turned. Meshes without a skin, morph targets and
 /// animations that move no joint are left out; a file without clips is read, see [`Character::clip`].
 pub fn read_character(path: &Path, rate: f64) -> Result<Character> {
     let file = File::open(path)?;
@@ -64,6 +64,7 @@ fn character(file: &File, rate: f64) -> Read<Character> {
     if welded.mesh.triangles.is_empty() {
         return Err("its skinned mesh has no triangle with an area".to_string());
     }
+    face_outwards(&mut welded);
     fill_weights(&mut welded.weights, &welded.mesh.positions, skeleton.hip);
     Ok(Character {
         joints: skeleton.joints(canonical, metres_per_unit)?,
@@ -92,6 +93,16 @@ fn add(soup: &mut Soup, part: &Part, positions: Vec<DVec3>, weights: Vec<SkinWei
     let Part { uv, pinned, triangles, colour, .. } = part.clone();
     let turn = to_world.matrix3.determinant() < 0.0;
     soup.add(Soup { positions, weights, uv, pinned, triangles, colour, ..Soup::default() }, turn);
+}
+
+/// Turns the triangles of a body that faces inwards as a whole: they tell cloth which side is out.
+fn face_outwards(body: &mut Welded) {
+    let Mesh { positions, triangles } = &mut body.mesh;
+    let centre = positions.iter().sum::<DVec3>() / positions.len() as f64;
+    let volume = |t: &[u32; 3]| triangle::volume(t.map(|i| positions[i as usize] - centre));
+    if triangles.iter().map(volume).sum::<f64>() < 0.0 {
+        triangles.iter_mut().chain(&mut body.surface.triangles).for_each(|triangle| triangle.swap(1, 2));
+    }
 }
 
 /// 1 for an extent of 0.1 to 10, else the power of ten that brings it to between 1 and 10 metres.

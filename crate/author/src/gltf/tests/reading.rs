@@ -3,7 +3,7 @@
 use super::{RATE, edit, overwrite, tube, tube_file};
 use crate::gltf::write::{Appearance, write_character, write_garment};
 use crate::gltf::{read_character, read_garment};
-use crate::rig::Garment;
+use crate::rig::{Garment, Mesh};
 use glam::DVec3;
 use serde_json::json;
 use std::collections::HashMap;
@@ -74,6 +74,11 @@ fn a_garment_survives_writing_and_reading() {
     assert_eq!(partner, (0..garment.mesh.positions.len()).collect::<Vec<_>>());
 }
 
+fn volume(body: &Mesh) -> f64 {
+    let corners = |t: &[u32; 3]| t.map(|i| body.positions[i as usize]);
+    body.triangles.iter().map(corners).map(|[a, b, c]| a.dot(b.cross(c)) / 6.0).sum()
+}
+
 #[test]
 fn the_welded_tube_is_closed_and_faces_outwards() {
     let folder = tempfile::tempdir().unwrap();
@@ -85,8 +90,7 @@ fn the_welded_tube_is_closed_and_faces_outwards() {
         }
     }
     assert!(edges.values().all(|&sum| sum == 0), "each edge is walked once in each direction");
-    let corner = |t: &[u32; 3]| t.map(|i| body.positions[i as usize]);
-    let volume: f64 = body.triangles.iter().map(corner).map(|[a, b, c]| a.dot(b.cross(c)) / 6.0).sum();
+    let volume = volume(&body);
     let hexagon = 1.5 * 3f64.sqrt() * 0.01;
     assert!((volume - hexagon * 1.2).abs() < 1e-6, "volume {volume}");
 }
@@ -100,9 +104,21 @@ fn mirrored_characters_still_face_outwards() {
         json["scenes"][0]["nodes"] = json!([nodes.len() - 1, nodes.len() - 2]);
     });
     let body = read_character(&path, RATE).unwrap().body;
-    let corner = |t: &[u32; 3]| t.map(|i| body.positions[i as usize]);
-    let volume: f64 = body.triangles.iter().map(corner).map(|[a, b, c]| a.dot(b.cross(c)) / 6.0).sum();
+    let volume = volume(&body);
     assert!(volume > 0.03, "volume {volume}");
+}
+
+#[test]
+fn a_body_that_faces_inwards_is_turned() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("inwards.glb");
+    let mut inwards = tube();
+    inwards.body.triangles.iter_mut().chain(&mut inwards.surface.triangles).for_each(|triangle| triangle.swap(1, 2));
+    write_character(&path, &inwards, &Appearance::default()).unwrap();
+    let found = read_character(&path, RATE).unwrap();
+    assert!(volume(&inwards.body) < -0.03 && volume(&found.body) > 0.03, "volume {}", volume(&found.body));
+    let drawn = |t: &[u32; 3]| t.map(|i| found.surface.vertex[i as usize]);
+    assert_eq!(found.surface.triangles.iter().map(drawn).collect::<Vec<_>>(), found.body.triangles);
 }
 
 #[test]
