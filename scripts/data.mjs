@@ -22,7 +22,7 @@ const PAIRS = {
   'sphere-sheet': {},
   'box-sheet': {},
 };
-/** Poses of a dataset, evenly spread over the frames of its clips at `RATE` a second. A full one goes into the same folder. */
+/** Poses of a dataset, evenly spread over the frames of its clips at `RATE` a second. A full one adds to a small one. */
 const POSES = { small: 80, full: 1300 };
 const RATE = 10;
 const VERTICES = '2100';

@@ -95,24 +95,29 @@ impl<'a> Run<'a> {
     }
 }
 
-/// The poses and twins of the request's shard, in an order (bits of the index reversed) by which a run that is cut off has done some of
-/// every clip.
+/// The poses and twins of the request's shard, in [`order`].
 fn tasks<'a>(request: &Request<'a>, poses: usize, folder: &Path) -> Vec<Task<'a>> {
     let clips = request.character.clips.iter().enumerate();
     let frames = clips
         .flat_map(|(clip, sampled)| sampled.poses.iter().enumerate().map(move |(frame, pose)| (clip, frame, pose)));
     let frames: Vec<_> = frames.collect();
-    let chosen = noise::spread(poses, request.poses.unwrap_or(poses));
-    let twins = noise::spread(chosen.len(), request.twins);
+    let chosen = order(poses).into_iter().take(request.poses.unwrap_or(poses)).enumerate();
     let mut tasks = Vec::new();
-    let mut chosen: Vec<(usize, usize)> = chosen.into_iter().enumerate().collect();
-    chosen.sort_by_key(|(index, _)| index.reverse_bits());
-    for (index, at) in chosen.into_iter().filter(|(index, _)| request.shard.holds(*index)) {
+    for (index, at) in chosen.filter(|(index, _)| request.shard.holds(*index)) {
         let (clip, frame, pose) = frames[at];
         tasks.push(Task { clip, frame, twin: false, pose, path: pose_path(folder, clip, frame) });
-        if twins.binary_search(&index).is_ok() {
+        if index < request.twins {
             tasks.push(Task { clip, frame, twin: true, pose, path: twin_path(folder, clip, frame) });
         }
     }
     tasks
+}
+
+/// Indices below `count` in an order of which every beginning is evenly spread: multiples of the golden ratio, by their fraction. So more
+/// poses add to fewer, a run that is cut off has done some of every clip, and no gait is always met at the same phase.
+fn order(count: usize) -> Vec<usize> {
+    const GOLDEN: u32 = 0x9E37_79B9;
+    let mut order: Vec<usize> = (0..count).collect();
+    order.sort_by_key(|index| (*index as u32).wrapping_mul(GOLDEN));
+    order
 }

@@ -43,7 +43,7 @@ pub struct Options {
     /// Poses per second sampled from every clip
     #[arg(long, default_value_t = 10.0)]
     pub rate: f64,
-    /// Simulate only this many of the frames, evenly spread over the clips. Default: all
+    /// Simulate only this many of the frames, evenly spread over the clips; a greater number adds to them. Default: all
     #[arg(long, value_name = "N")]
     pub poses: Option<usize>,
     /// Clip to use, by name; may be given several times. Default: all

@@ -37,12 +37,6 @@ pub struct NoiseFloor {
     pub skinning: Difference,
 }
 
-/// Indices of `wanted` of `count` poses, evenly spread, ascending.
-pub(super) fn spread(count: usize, wanted: usize) -> Vec<usize> {
-    let wanted = wanted.min(count);
-    (0..wanted).map(|i| (2 * i + 1) * count / (2 * wanted)).collect()
-}
-
 /// The twin of a pose: every joint turned by [`DEGREES`] against its parent, about an axis drawn from clip, frame and joint.
 pub(super) fn turned(character: &Character, pose: &Pose, clip: usize, frame: usize) -> Pose {
     let mut rng = fastrand::Rng::with_seed(((clip as u64) << 32) + frame as u64);

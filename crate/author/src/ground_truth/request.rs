@@ -20,7 +20,7 @@ pub struct Request<'a> {
     pub settings: Settings,
     /// The part of the poses to simulate.
     pub shard: Shard,
-    /// How many of the clips' frames to simulate, evenly spread; `None`: all.
+    /// How many of the clips' frames to simulate, evenly spread, more adding to fewer; `None`: all.
     pub poses: Option<usize>,
     /// Poses to simulate a second time, a little changed, for the noise floor.
     pub twins: usize,

@@ -92,10 +92,19 @@ fn shards_share_the_poses_evenly() {
 }
 
 #[test]
-fn twins_are_spread_over_the_poses() {
-    assert_eq!(noise::spread(100, 4), [12, 37, 62, 87]);
-    assert_eq!(noise::spread(3, 9), [0, 1, 2]);
-    assert!(noise::spread(0, 9).is_empty());
+fn more_poses_add_to_fewer_and_any_number_is_evenly_spread() {
+    for (count, wanted) in [(2615, 8), (2615, 80), (2615, 1300), (120, 7)] {
+        let mut chosen = order(count)[..wanted].to_vec();
+        chosen.sort_unstable();
+        let gap = chosen.windows(2).map(|pair| pair[1] - pair[0]).max().unwrap();
+        assert!(gap * wanted < 3 * count, "{wanted} of {count}: gaps of up to {gap}");
+    }
+    let (mut character, garment) = scene();
+    character.clips[0].poses = vec![character.canonical_pose(); 60];
+    let request = |poses| Request { poses: Some(poses), twins: 4, ..request(&character, &garment) };
+    let [fewer, more] = [20, 50].map(|poses| tasks(&request(poses), 60, Path::new("")));
+    assert_eq!([fewer.len(), more.len()], [24, 54]);
+    assert!(fewer.iter().zip(&more).all(|(a, b)| (a.frame, a.twin) == (b.frame, b.twin)));
 }
 
 #[test]
