@@ -9,7 +9,6 @@ use crate::simulate::{body_frame, to_body_frame};
 use crate::{Error, Result};
 use glam::{DVec2, DVec3};
 use image::{Rgb, RgbImage};
-use std::collections::BTreeMap;
 
 /// Poses on a sheet, and how many of them side by side.
 const POSES: usize = 12;
@@ -71,9 +70,6 @@ fn bounds(cloth: &[DVec3], view: &View) -> (DVec3, DVec3) {
 /// where it hangs in the canonical pose, for there it is most likely to be wrong.
 fn choose<'a>(dataset: &'a Dataset, character: &Character) -> Vec<&'a Sample> {
     let clips: Vec<&[Sample]> = dataset.samples.chunk_by(|a, b| a.record.clip == b.record.clip).collect();
-    let wanted = POSES.min(dataset.samples.len());
-    let mut shares: BTreeMap<usize, usize> = BTreeMap::new();
-    (0..wanted).for_each(|i| *shares.entry(i * clips.len() / wanted).or_default() += 1);
     let frame = body_frame(character, &character.canonical_pose());
     let hung: Vec<DVec3> =
         vertices(&dataset.setup.template).iter().map(|point| frame.transform_point3(*point)).collect();
@@ -81,6 +77,35 @@ fn choose<'a>(dataset: &'a Dataset, character: &Character) -> Vec<&'a Sample> {
         vertices(&sample.truth).iter().zip(&hung).map(|(a, b)| a.distance_squared(*b)).sum()
     };
     let furthest = |part: &'a [Sample]| part.iter().max_by(|a, b| distance(a).total_cmp(&distance(b)));
-    let stretches = shares.iter().flat_map(|(clip, share)| clips[*clip].chunks(clips[*clip].len().div_ceil(*share)));
+    let lengths: Vec<usize> = clips.iter().map(|clip| clip.len()).collect();
+    let stretches = clips.iter().zip(deal(&lengths)).flat_map(|(clip, share)| {
+        let bound = move |i: usize| i * clip.len() / share;
+        (0..share).map(move |i| &clip[bound(i)..bound(i + 1)])
+    });
     stretches.filter_map(furthest).collect()
+}
+
+/// How many of [`POSES`] each clip gives, by the clips' lengths: as many as any other, unless it has no more.
+fn deal(lengths: &[usize]) -> Vec<usize> {
+    let taken = POSES.min(lengths.len());
+    let taken: Vec<usize> = (0..taken).map(|i| i * lengths.len() / taken).collect();
+    let most = taken.iter().map(|clip| lengths[*clip]).sum::<usize>().min(POSES);
+    let mut shares = vec![0; lengths.len()];
+    let rounds = (1..).flat_map(|round| taken.iter().filter(move |clip| lengths[**clip] >= round));
+    rounds.take(most).for_each(|clip| shares[*clip] += 1);
+    shares
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_sheet_is_full_while_there_are_poses() {
+        assert_eq!(deal(&[59, 1, 4]), [7, 1, 4]);
+        assert_eq!(deal(&[2, 3]), [2, 3]);
+        assert_eq!(deal(&[9; 24]).iter().sum::<usize>(), POSES);
+        assert!(deal(&[9; 24]).chunks(2).all(|pair| pair.iter().sum::<usize>() == 1), "evenly spread");
+        assert!(deal(&[]).is_empty());
+    }
 }
