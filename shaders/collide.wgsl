@@ -10,6 +10,7 @@ struct Params {
     depth: f32,
     steepest: f32,
     sliver: f32,
+    folded: f32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
@@ -93,7 +94,7 @@ fn push_from(point: vec3<f32>, place: Place) -> vec4<f32> {
     let up = steep / max(length, 1e-30);
     let along_up = dot(point - foot, up);
     let beside = least > params.gap * params.gap && abs(along_up) < params.steepest * sqrt(least);
-    let found = best.x < 3.4e38 && length > 1e-3 && !beside && along_up >= -params.depth;
+    let found = best.x < 3.4e38 && length > params.folded && !beside && along_up >= -params.depth;
     let height = select(along_up, sqrt(least), along_up > 0.0);
     return select(vec4(0.0, 0.0, 0.0, 3.4e38), vec4(up * max(params.gap - height, 0.0), least), found);
 }

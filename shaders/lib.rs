@@ -79,7 +79,7 @@ params! {
     /// `Params` of body_frame.wgsl.
     BodyFrame { joints: u32, root: u32, yaw: u32 }
     /// `Params` of collide.wgsl.
-    Collide { vertices: u32, seeds: u32, steps: u32, gap: f32, depth: f32, steepest: f32, sliver: f32 }
+    Collide { vertices: u32, seeds: u32, steps: u32, gap: f32, depth: f32, steepest: f32, sliver: f32, folded: f32 }
     /// `Params` of features.wgsl.
     Features { mean: [f32; 3], edge_scale: f32, deviation: [f32; 3], vertices: u32 }
     /// `Params` of lift.wgsl.

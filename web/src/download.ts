@@ -21,24 +21,26 @@ export async function download(address: string | URL, { onProgress, request }: D
     onProgress?.({ loaded: local.length, total: local.length });
     return local;
   }
-  const response = await fetch(address, request).catch((cause: unknown) => {
+  const refuse = (what: string) => (cause: unknown): never => {
     if (request?.signal?.aborted) throw cause;
-    throw new CtsnError('fetch', `${String(address)}: no answer (${String(cause)})`, { cause });
-  });
+    throw new CtsnError('fetch', `${String(address)}: ${what} (${String(cause)})`, { cause });
+  };
+  const response = await fetch(address, request).catch(refuse('no answer'));
   if (!response.ok) {
     throw new CtsnError('fetch', `${String(address)}: HTTP ${response.status} ${response.statusText}`.trim(), { status: response.status });
   }
-  return collect(response, onProgress);
+  return collect(response, onProgress, refuse('the answer broke off'));
 }
 
-async function collect(response: Response, onProgress: DownloadOptions['onProgress']): Promise<Uint8Array<ArrayBuffer>> {
+async function collect(response: Response, onProgress: DownloadOptions['onProgress'], refuse: (cause: unknown) => never): Promise<Uint8Array<ArrayBuffer>> {
   const announced = Number(response.headers.get('content-length'));
   const total = announced > 0 && !response.headers.get('content-encoding') ? announced : undefined;
-  if (!response.body) return new Uint8Array(await response.arrayBuffer());
+  if (!response.body) return new Uint8Array(await response.arrayBuffer().catch(refuse));
   const parts: Uint8Array[] = [];
   let loaded = 0;
   const reader = response.body.getReader();
-  for (let part = await reader.read(); !part.done; part = await reader.read()) {
+  const next = () => reader.read().catch(refuse);
+  for (let part = await next(); !part.done; part = await next()) {
     parts.push(part.value);
     loaded += part.value.length;
     onProgress?.(total === undefined ? { loaded } : { loaded, total });

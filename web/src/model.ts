@@ -130,6 +130,7 @@ export class ClothModel extends EventTarget {
 
   /** Buffers for a further cloth of this model on the GPU: the weights are shared. */
   async createBuffers(): Promise<ClothBuffers> {
+    this.#alive();
     const { running } = this.#switch;
     if (!running) throw new CtsnError('no_device', `the model computes on the CPU: ${this.fallback ?? 'no GPU was asked for'}`);
     return running.side.allocate();

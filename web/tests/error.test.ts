@@ -78,12 +78,18 @@ test('a model that was disposed of', async () => {
   model.dispose();
   expect(model.disposed).toBe(true);
   expect((await failure(() => model.predictCloth(poses[0]!))).code).toBe('disposed');
+  expect((await failure(() => model.createBuffers())).code).toBe('disposed');
 });
 
 let server: Server;
 let address: string;
 beforeAll(async () => {
   server = createServer((request, response) => {
+    if (request.url === '/broken') {
+      response.writeHead(200, { 'content-length': whole.length });
+      response.write(whole.subarray(0, 1000));
+      return void setTimeout(() => response.destroy(), 50);
+    }
     if (request.url !== '/small') return void response.writeHead(404).end();
     response.writeHead(200, { 'content-length': whole.length });
     response.write(whole.subarray(0, 1000));
@@ -104,11 +110,12 @@ test('loading from an address, with true sizes on the way', async () => {
   model.dispose();
 });
 
-test('loading that fails: no such file, no server, no local file, aborted', async () => {
+test('loading that fails: no such file, no server, a broken connection, no local file, aborted', async () => {
   expect(await failure(() => loadModel(`${address}/none`))).toMatchObject({ code: 'fetch', status: 404 });
   const unanswered = await failure(() => loadModel('http://127.0.0.1:1/'));
   expect(unanswered).toMatchObject({ code: 'fetch' });
   expect(unanswered.status).toBeUndefined();
+  expect(await failure(() => loadModel(`${address}/broken`))).toMatchObject({ code: 'fetch', message: expect.stringContaining('broke off') as string });
   expect(await failure(() => loadModel(new URL('none.safetensors', import.meta.url)))).toMatchObject({ code: 'fetch' });
   await expect(loadModel(`${address}/small`, { request: { signal: AbortSignal.abort() } })).rejects.toThrow(/abort/);
 });

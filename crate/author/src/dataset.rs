@@ -1,6 +1,7 @@
 //! Simulated truth on disk: a folder with `setup.safetensors` (cloth, body, joints) and one file per pose under `poses/`.
 //! One file per pose, written whole or not at all, makes the simulation resumable and lets shards merge by copying.
 
+mod same;
 mod sample;
 
 use crate::rig::{self, Character, Joint, Mesh, SkinWeights, Surface as Drawn, is_obstacle, strongest};
@@ -8,6 +9,7 @@ use crate::{Error, Result};
 use ctsn_core::file::{Tensor, Tensors};
 use ctsn_core::model::Surface;
 use kiddo::{ImmutableKdTree, SquaredEuclidean};
+pub use same::fingerprint;
 pub(crate) use sample::paths;
 pub use sample::{Record, Sample, pose_path, twin_path};
 use serde::{Deserialize, Serialize};
@@ -29,6 +31,9 @@ pub struct Description {
     pub frames: Vec<usize>,
     /// Joint names.
     pub joints: Vec<String>,
+    /// Index of each joint's parent, which stands before it; empty in a dataset of an older version, whose joints have none.
+    #[serde(default)]
+    pub parents: Vec<Option<usize>>,
     /// Index of the hip.
     pub root: usize,
     /// `B_j⁻¹`, row-major 3×4.
@@ -182,34 +187,6 @@ impl Setup {
         })
     }
 
-    /// Refuses to go on with a dataset made from something else than `wanted`, and says what differs.
-    pub fn check_same(&self, wanted: &Self, folder: &Path) -> Result<()> {
-        let mut same = wanted.clone();
-        same.template.clone_from(&self.template);
-        if *self == same {
-            return Ok(());
-        }
-        let (found, wanted) = (&self.description, &wanted.description);
-        let texts = |found: &str, wanted: &str| {
-            let parts = found.split(", ").zip(wanted.split(", ")).find(|(found, wanted)| found != wanted);
-            let (found, wanted) = parts.unwrap_or((found, wanted));
-            format!("wanted {wanted:?}, found {found:?}")
-        };
-        let reason = if found.material != wanted.material {
-            format!("another material: {}", texts(&found.material, &wanted.material))
-        } else if found.settings != wanted.settings {
-            format!("other settings of the simulator: {}", texts(&found.settings, &wanted.settings))
-        } else if (found.rate, &found.clips, &found.frames) != (wanted.rate, &wanted.clips, &wanted.frames) {
-            let motion = |of: &Description| format!("{} clips at {} poses a second", of.clips.len(), of.rate);
-            format!("other motion: wanted {}, found {}", motion(wanted), motion(found))
-        } else {
-            let pair = |of: &Description| format!("{} on {}", of.garment, of.character);
-            format!("another character or garment: wanted {}, found {}", pair(wanted), pair(found))
-        };
-        let reason = format!("holds poses of {reason}; name another folder, or delete this one");
-        Err(Error::File { path: folder.to_owned(), reason })
-    }
-
     /// Index of the body vertex nearest to each cloth vertex [n], the reference of the mesh stream. network.md §3.
     pub fn reference(&self) -> Result<Vec<usize>> {
         self.nearest_among((0..self.body.len() / 3).collect())
@@ -233,16 +210,19 @@ impl Setup {
         Ok(self.template.as_chunks::<3>().0.iter().map(|vertex| body[query(vertex)]).collect())
     }
 
-    /// The body and its joints, without clips and parents.
+    /// The body and its joints, without clips.
     pub fn character(&self) -> Result<Character> {
-        let Description { joints, inverse_bind, root, .. } = &self.description;
-        let joint = |(name, bind): (&String, &Vec<f32>)| {
+        let Description { joints, inverse_bind, parents, root, .. } = &self.description;
+        let joint = |(index, (name, bind)): (usize, (&String, &Vec<f32>))| {
             let inverse_bind = rig::affine(bind.as_slice().try_into().ok()?);
-            Some(Joint { name: name.clone(), parent: None, inverse_bind })
+            let parent = parents.get(index).copied().flatten();
+            parent.is_none_or(|parent| parent < index).then(|| Joint { name: name.clone(), parent, inverse_bind })
         };
-        let found: Option<Vec<Joint>> = joints.iter().zip(inverse_bind).map(joint).collect();
-        let wrong =
-            || Error::Dataset(format!("wanted {} inverse binds of 12 numbers and a root among them", joints.len()));
+        let found: Option<Vec<Joint>> = joints.iter().zip(inverse_bind).enumerate().map(joint).collect();
+        let wrong = || {
+            let wanted = "inverse binds of 12 numbers, parents before their children, and a root among them";
+            Error::Dataset(format!("wanted {} {wanted}", joints.len()))
+        };
         Ok(Character {
             joints: found.filter(|list| list.len() == joints.len() && *root < list.len()).ok_or_else(wrong)?,
             root: *root,

@@ -1,7 +1,8 @@
 //! `ctsn bake`: simulate, train and evaluate in one go.
 
 use super::{evaluate, garment, simulate, train};
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
+use ctsn_author::dataset::{read, write};
 use ctsn_author::garment::Cut;
 use ctsn_author::ground_truth::Shard;
 use std::path::{Path, PathBuf};
@@ -14,6 +15,7 @@ pub struct Arguments {
     /// Rigged character (glTF)
     character: PathBuf,
     /// Garment, worn in the character's canonical pose (glTF). Without one, a garment is made as `ctsn garment` does
+    #[arg(conflicts_with = "CutArguments")]
     garment: Option<PathBuf>,
     /// Model file to write (safetensors)
     #[arg(short, long)]
@@ -45,12 +47,17 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     evaluate::run(&evaluate::Arguments { model: output.clone(), dataset, json, html: None })
 }
 
-/// The garment `ctsn garment` makes, kept beside the dataset and made once.
+/// The garment `ctsn garment` makes, kept beside the dataset and made once, with a note of how it was cut.
 fn generated(character: &Path, cut: &Cut, dataset: &Path) -> Result<PathBuf> {
-    let path = dataset.join("garment.glb");
+    let [path, note] = ["garment.glb", "garment.txt"].map(|name| dataset.join(name));
+    let wanted = format!("{cut:?}");
     if !path.exists() {
         std::fs::create_dir_all(dataset).with_context(|| dataset.display().to_string())?;
+        write(&note, wanted.as_bytes())?;
         garment::make(character, cut, &path)?;
     }
+    let found = String::from_utf8(read(&note)?).with_context(|| note.display().to_string())?;
+    let what = "was cut otherwise; name another --output, or delete it";
+    ensure!(found == wanted, "{}: {what}: wanted {wanted}, found {found}", path.display());
     Ok(path)
 }

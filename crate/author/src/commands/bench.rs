@@ -3,7 +3,7 @@
 mod gpu;
 
 use super::{Device, Network};
-use anyhow::Result;
+use anyhow::{Result, ensure};
 use ctsn_author::dataset::{Dataset, Sample, Setup};
 use ctsn_author::synthetic;
 use ctsn_author::train::{Settings, Trainer};
@@ -49,6 +49,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let (model, setup, samples) = match (&arguments.model, &arguments.data) {
         (Some(path), Some(data)) => {
             let Dataset { setup, samples, .. } = Dataset::read(data)?;
+            ensure!(!samples.is_empty(), "{}: wanted poses to predict, found none that was kept", data.display());
             (super::model(path)?, setup, samples)
         }
         _ => made_up(arguments)?,

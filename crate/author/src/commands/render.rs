@@ -2,13 +2,13 @@
 
 use super::model;
 use anyhow::{Context, Result, bail};
-use ctsn_author::dataset::{Sample, pose_path};
+use ctsn_author::dataset::{Description, Sample, Setup, pose_path};
 use ctsn_author::rig::{Character, Pose, joints, vertices};
 use ctsn_author::simulate::body_frame;
 use ctsn_author::{gltf, render};
 use ctsn_core::cpu::Level;
 use ctsn_core::{Predictor, Streams};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Draw front, side and back of a character in a model's predicted cloth
 #[derive(clap::Args)]
@@ -23,8 +23,8 @@ pub struct Arguments {
     /// Frame of the clip, counted at --rate
     #[arg(long)]
     frame: usize,
-    /// Frames per second
-    #[arg(long, default_value_t = 10.0)]
+    /// Frames per second; with --truth, the dataset's
+    #[arg(long, default_value_t = 10.0, conflicts_with = "truth")]
     rate: f64,
     /// Draw the simulated truth of this dataset folder instead of the prediction
     #[arg(long)]
@@ -39,7 +39,9 @@ pub struct Arguments {
 
 pub fn run(arguments: &Arguments) -> Result<()> {
     let model = model(&arguments.model)?;
-    let character = gltf::read_character(&arguments.character, arguments.rate)?;
+    let dataset = arguments.truth.as_deref().map(description).transpose()?;
+    let rate = dataset.as_ref().map_or(arguments.rate, |description| description.rate);
+    let character = gltf::read_character(&arguments.character, rate)?;
     let clip = character.clip(&arguments.clip)?;
     let pose = clip.poses.get(arguments.frame).with_context(|| {
         format!(
@@ -50,9 +52,12 @@ pub fn run(arguments: &Arguments) -> Result<()> {
             clip.rate
         )
     })?;
-    let cloth = match &arguments.truth {
-        Some(folder) => {
-            let index = character.clips.iter().position(|each| each.name == clip.name).unwrap_or_default();
+    let cloth = match arguments.truth.as_ref().zip(dataset) {
+        Some((folder, description)) => {
+            let index = description.clips.iter().position(|name| *name == clip.name);
+            let index = index.with_context(|| {
+                format!("{}: no clip {}; it has: {}", folder.display(), clip.name, description.clips.join(", "))
+            })?;
             let path = pose_path(folder, index, arguments.frame);
             let sample = Sample::read(&path, model.sizes.joints, model.sizes.vertices)?;
             let back = body_frame(&character, pose).inverse();
@@ -70,6 +75,12 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     render::render_dressed(&character, pose, Some((&cloth, triangles)), &arguments.output)?;
     println!("{}", arguments.output.display());
     Ok(())
+}
+
+/// What the poses of a dataset have in common.
+fn description(folder: &Path) -> Result<Description> {
+    let setup = Setup::read(folder)?.with_context(|| format!("{}: is no dataset", folder.display()))?;
+    Ok(setup.description)
 }
 
 /// The pose in the order of the model's joints.

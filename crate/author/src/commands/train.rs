@@ -6,14 +6,14 @@ use ctsn_author::body::body;
 use ctsn_author::dataset::{self, Dataset, Setup};
 use ctsn_author::train::{self, End, Files, Part, Row, Slices, Trainer, Variant};
 use ctsn_core::model::{HostModel, Storage};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// Train the network on a dataset: all clips but the last tenth (with fewer than ten: the first 90 % of each)
 ///
 /// A tenth of these are not learned from, but predicted after every epoch: the model with the least error on them is kept. The learning
 /// curve stands beside the model (MODEL.curve.csv). A checkpoint is written every few epochs; training interrupted goes on from it, to
-/// the same result.
+/// the same result. A model that this very training has made is left as it is.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// Dataset folder, as `ctsn simulate` leaves it
@@ -74,6 +74,10 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     // Before the training: what cannot be made of this body must not be found out after hours.
     let body = body(&dataset.setup, &slices.train)?;
     let mut trainer = arguments.settings.trainer(&dataset.setup, &slices)?;
+    if made_by(&arguments.output, &trainer.key()) {
+        println!("{}: has been trained so already; delete it to train anew", arguments.output.display());
+        return Ok(());
+    }
     if files.checkpoint.exists() {
         trainer.resume(&files.checkpoint)?;
         println!("going on from epoch {} of {}", trainer.epoch, files.checkpoint.display());
@@ -97,6 +101,13 @@ pub fn run(arguments: &Arguments) -> Result<()> {
             }
         }
     }
+}
+
+/// Whether there is a model of the training of that key.
+fn made_by(path: &Path, key: &str) -> bool {
+    let summary = super::model(path).ok().and_then(|model| model.training);
+    let summary = summary.and_then(|text| serde_json::from_str::<serde_json::Value>(&text).ok());
+    summary.is_some_and(|summary| summary["key"] == key)
 }
 
 impl Settings {
@@ -131,6 +142,7 @@ impl Settings {
             "untrained_validation_metres": trainer.untrained,
             "validation_metres": best.distance,
             "validation_degrees": best.normal,
+            "key": trainer.key(),
             "ctsn": env!("CARGO_PKG_VERSION"),
         });
         model.training = Some(summary.to_string());

@@ -59,6 +59,7 @@ impl Request<'_> {
             clips: clips.iter().map(|clip| clip.name.clone()).collect(),
             frames: clips.iter().map(|clip| clip.poses.len()).collect(),
             joints: joints.iter().map(|joint| joint.name.clone()).collect(),
+            parents: joints.iter().map(|joint| joint.parent).collect(),
             root: self.character.root,
             inverse_bind: joints.iter().map(|joint| row_major(&joint.inverse_bind).to_vec()).collect(),
             material: format!("{}: {:?}", self.material.0, self.material.1),

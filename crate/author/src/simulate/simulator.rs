@@ -153,9 +153,10 @@ impl Simulator {
             return reject(format!("wanted no vertex inside the body, found {free}, {depth:.2} mm deep"));
         }
         if pinched as f64 > wanted.pinched * outcome.positions.len() as f64 {
-            let share = 100.0 * wanted.pinched;
+            let [wanted, found] =
+                [wanted.pinched, pinched as f64 / outcome.positions.len() as f64].map(|share| 100.0 * share);
             return reject(format!(
-                "wanted at most {share} % of the vertices where the body passes into itself, found {pinched}"
+                "wanted at most {wanted} % of the vertices where the body passes into itself, found {found:.2} %"
             ));
         }
         if crossings > 0 {

@@ -10,7 +10,7 @@ mod table;
 #[cfg(test)]
 mod tests;
 
-use crate::dataset::{Dataset, Sample, Split, write};
+use crate::dataset::{Dataset, Sample, Split, fingerprint, write};
 use crate::evaluate::{Errors, Judge, predictions, unseen};
 use crate::train::{End, Files, Row, Settings, Slices, Trainer, Variant, slices};
 use crate::{Error, Result};
@@ -126,8 +126,9 @@ impl<'a> Study<'a> {
 
     fn made_of(&self, entry: &Entry) -> String {
         let settings = Settings { variant: entry.method.variant(), ..self.settings };
-        let poses = [&self.slices.train, &self.slices.validation, &self.unseen].map(Vec::len);
-        format!("{:?}, {settings:?}, {}, poses {poses:?}", entry.method, self.title())
+        let parts = [&self.slices.train, &self.slices.validation, &self.unseen];
+        let data = parts.map(|samples| fingerprint(&self.dataset.setup, samples));
+        format!("{:?}, {settings:?}, {}, poses {:?}, data {data:016x?}", entry.method, self.title(), self.poses())
     }
 
     /// Bytes of the file; of a form that makes its basis from fewer numbers, of those.
@@ -144,8 +145,10 @@ impl<'a> Study<'a> {
         let variant = entry.method.variant();
         if entry.method == Method::Deepsd {
             let form = deepsd::Deepsd::new(model, setup, train, self.settings)?;
-            let deepsd::Trained { best, model, parameters } = form.fit(&self.slices, &self.judge, progress)?;
-            return Ok(Made { model, parameters: Some(parameters), epoch: best.epoch, seconds: best.seconds });
+            let curve = self.folder.join(format!("{}.curve.csv", entry.name));
+            let deepsd::Trained { best, model, parameters, seconds } =
+                form.fit(&self.slices, &self.judge, &curve, progress)?;
+            return Ok(Made { model, parameters: Some(parameters), epoch: best.epoch, seconds });
         }
         if variant == (Variant { skeleton: false, mesh: false, weights: false }) {
             return Ok(Made { model, parameters: None, epoch: 0, seconds: 0.0 });

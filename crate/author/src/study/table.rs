@@ -44,7 +44,9 @@ impl Grid {
     /// The grid of `table`, from its entries and their outcomes.
     pub fn new(table: Table, study: &Study, entries: &[Entry], outcomes: &[Outcome]) -> Self {
         let [train, validation, unseen] = study.poses();
-        let poses = format!("{train} poses learned from, {validation} to choose the epoch by, {unseen} unseen.");
+        let poses = format!(
+            "{train} poses learned from, {validation} to choose the epoch by, {unseen} unseen; without repair of penetration."
+        );
         let pairs = || entries.iter().zip(outcomes);
         let plain = |(entry, outcome): (&Entry, &Outcome)| {
             (entry.title.clone(), errors(&outcome.errors).into_iter().chain(costs(outcome)).collect())

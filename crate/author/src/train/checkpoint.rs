@@ -4,6 +4,7 @@ use super::{Row, Trainer};
 use crate::dataset::{tensors, write};
 use crate::{Error, Result};
 use ctsn_core::file::{Tensor, Tensors};
+use ctsn_core::model::HostModel;
 use std::path::Path;
 use std::time::Instant;
 
@@ -56,8 +57,9 @@ impl Trainer {
         Ok(())
     }
 
-    /// What two trainings must have in common to go on as one.
-    fn key(&self) -> String {
-        format!("{:?} {:?} {} poses", self.settings, self.model.sizes, self.items.len())
+    /// What two trainings must have in common to go on as one, and by which their models are the same.
+    pub fn key(&self) -> String {
+        let HostModel { sizes, layers, .. } = &self.model;
+        format!("{:?} {sizes:?} {} layers, data {:016x}", self.settings, layers.len(), self.data)
     }
 }

@@ -17,12 +17,13 @@ mod tests;
 mod variant;
 mod weights;
 
-use crate::dataset::{Sample, Setup};
+use crate::dataset::{Sample, Setup, fingerprint};
 use crate::{Error, Result};
 use adam::{Moments, cosine};
 use ctsn_core::device::{Device, Space};
 use ctsn_core::model::HostModel;
 use ctsn_core::network::{Activations, DeviceModel, Streams, forward};
+pub(crate) use curve::write_curve;
 pub use fit::{End, Files, Row};
 pub use initial::{Architecture, initial};
 pub(crate) use initial::{layer, mlp};
@@ -78,6 +79,8 @@ pub struct Loss {
 pub struct Trainer {
     model: HostModel,
     settings: Settings,
+    /// [`fingerprint`] of the samples.
+    data: u64,
     items: Vec<Item>,
     tape: Tape,
     shared: Shared,
@@ -134,6 +137,7 @@ impl Trainer {
         Ok(Self {
             model,
             settings,
+            data: fingerprint(setup, samples),
             items,
             tape,
             shared,

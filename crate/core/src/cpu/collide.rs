@@ -17,6 +17,8 @@ pub const STEEPEST: f32 = 0.5;
 
 /// A triangle whose angle at a corner has a smaller squared sine is taken for its edges.
 pub const SLIVER: f32 = 1e-6;
+/// Length of an interpolated unit normal up to which the body is folded onto itself there.
+pub const FOLDED: f32 = 1e-3;
 
 /// The posed body: positions and unit normals [b, 3], and the triangles around each vertex.
 pub struct Posed<'a> {
@@ -147,7 +149,8 @@ impl Posed<'_> {
         let ([b, c], way) = found?;
         let sum = self.normal(vertex) * (1.0 - best.b - best.c) + self.normal(*b) * best.b + self.normal(*c) * best.c;
         // Opposite normals: a body folded onto itself has no outside there.
-        Some((a + way, sum.try_normalize()?))
+        let length = sum.length();
+        (length > FOLDED).then(|| (a + way, sum / length))
     }
 }
 

@@ -93,10 +93,8 @@ fn rig(file: &Tensors, description: Description) -> Result<Rig> {
     let transform = |numbers: &Vec<f32>| <[f32; 12]>::try_from(numbers.as_slice()).ok();
     let inverse_bind: Option<Vec<_>> = description.inverse_bind.iter().map(transform).collect();
     let inverse_bind = inverse_bind.filter(|list| list.len() == joints).ok_or_else(|| {
-        Error::NotModel(format!(
-            "inverse_bind: wanted {joints} lists of 12 numbers, found {}",
-            description.inverse_bind.len()
-        ))
+        let lengths: Vec<usize> = description.inverse_bind.iter().map(Vec::len).collect();
+        Error::NotModel(format!("inverse_bind: wanted {joints} lists of 12 numbers, found lengths {lengths:?}"))
     })?;
     finite("inverse_bind", inverse_bind.as_flattened())?;
     let mean = file.f32("pose.mean", &[Some(12 * joints)])?.0;

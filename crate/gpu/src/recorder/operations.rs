@@ -193,6 +193,7 @@ impl Device for Recorder<'_> {
             depth: collide::DEPTH,
             steepest: collide::STEEPEST,
             sliver: collide::SLIVER,
+            folded: collide::FOLDED,
         };
         // A walk of about two steps, six triangles around each vertex.
         self.dispatch(&shaders::COLLIDE, params, &operands, [n, 1], *push, n * (8 * (width + 12) + 6 * 60));

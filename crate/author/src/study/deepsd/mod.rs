@@ -12,13 +12,14 @@ use crate::train::adam::{Moments, cosine};
 use crate::train::gradient::distance::distance;
 use crate::train::item::Item;
 use crate::train::tape::{Id, Lane, Shared, Tape};
-use crate::train::{Row, Settings, Slices, mlp, upload};
+use crate::train::{Row, Settings, Slices, mlp, upload, write_curve};
 use crate::{Error, Result};
 use ctsn_core::Streams;
 use ctsn_core::device::{Device, Space};
 use ctsn_core::model::{HostModel, Skin};
 use ctsn_core::network::{Activations, forward};
 use rayon::prelude::*;
+use std::path::Path;
 use std::time::Instant;
 
 /// Blend shapes, and hidden widths of the pose's MLP.
@@ -58,6 +59,20 @@ pub(super) struct Trained {
     pub model: HostModel,
     /// Numbers that were learned.
     pub parameters: usize,
+    /// Seconds of training.
+    pub seconds: f64,
+}
+
+/// Mean E_dist (metres) and E_norm (degrees) on `samples`.
+fn validate(model: &HostModel, judge: &Judge, samples: &[&Sample]) -> Result<(f32, f32)> {
+    let predicted = predictions(model, judge, samples, Streams::Skeleton)?;
+    let errors = samples
+        .iter()
+        .zip(&predicted)
+        .map(|(sample, predicted)| differences(predicted, &vertices(&sample.truth), &model.triangles));
+    let sum = errors.fold((0.0, 0.0), |sum, error| (sum.0 + error.0, sum.1 + error.1));
+    let count = samples.len() as f64;
+    Ok(((sum.0 / count) as f32, (sum.1 / count) as f32))
 }
 
 impl Half {
@@ -107,38 +122,41 @@ impl Deepsd {
         Ok(Self { model, garment, garment_lane, outputs, pose, activations, lanes, items, settings })
     }
 
-    /// Trains to the end; the epoch of the least validation error.
-    pub fn fit(mut self, slices: &Slices, judge: &Judge, mut progress: impl FnMut(&Row)) -> Result<Trained> {
+    /// Trains to the end, or until it diverges; the epoch of the least validation error. Without checkpoints: it begins anew.
+    pub fn fit(
+        mut self,
+        slices: &Slices,
+        judge: &Judge,
+        curve: &Path,
+        mut progress: impl FnMut(&Row),
+    ) -> Result<Trained> {
         let start = Instant::now();
         let learned = self.garment.parameters.iter().map(|id| self.garment.shared.get(*id).len()).sum::<usize>();
         let of_pose = self.pose.parameters.iter().skip(2).map(|id| self.pose.shared.get(*id).len()).sum::<usize>();
-        let mut best: Option<(Row, HostModel)> = None;
+        let (mut best, mut rows): (Option<(Row, HostModel)>, Vec<Row>) = (None, Vec::new());
         for epoch in 1..=self.settings.epochs {
             if best.as_ref().is_some_and(|(row, _)| epoch - row.epoch > self.settings.patience) {
                 break;
             }
             let fine = self.epoch(epoch - 1);
             let model = self.model();
-            let predicted = predictions(&model, judge, &slices.validation, Streams::Skeleton)?;
-            let errors = slices
-                .validation
-                .iter()
-                .zip(&predicted)
-                .map(|(sample, predicted)| differences(predicted, &vertices(&sample.truth), &model.triangles));
-            let sum = errors.fold((0.0, 0.0), |sum, error| (sum.0 + error.0, sum.1 + error.1));
-            let count = slices.validation.len() as f64;
-            let (distance, normal) = ((sum.0 / count) as f32, (sum.1 / count) as f32);
+            let (distance, normal) = validate(&model, judge, &slices.validation)?;
             if !fine.is_finite() || !distance.is_finite() {
+                if best.is_some() {
+                    break;
+                }
                 return Err(Error::Diverged(format!("epoch {epoch}: loss {fine}")));
             }
             let row = Row { epoch, fine, distance, normal, seconds: start.elapsed().as_secs_f64(), ..Row::default() };
+            rows.push(row);
+            write_curve(curve, &rows)?;
             progress(&row);
             if best.as_ref().is_none_or(|(best, _)| distance < best.distance) {
                 best = Some((row, model));
             }
         }
         let (best, model) = best.ok_or_else(|| Error::Training("wanted at least one epoch, found 0".to_owned()))?;
-        Ok(Trained { best, model, parameters: learned + of_pose })
+        Ok(Trained { best, model, parameters: learned + of_pose, seconds: start.elapsed().as_secs_f64() })
     }
 
     /// One pass over the samples, in the order of seed and epoch; the mean loss, metres.

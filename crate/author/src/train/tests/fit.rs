@@ -102,6 +102,8 @@ fn the_learning_rate_has_fallen_when_the_time_is_up() {
     let due = |row: &Row| cosine(trainer.settings.rate, (row.seconds / budget.as_secs_f64()) as f32);
     assert!(trainer.curve.iter().all(|row| row.rate >= due(row)), "{:?}", trainer.curve);
     assert!(trainer.curve.windows(2).all(|pair| pair[1].rate < pair[0].rate), "{:?}", trainer.curve);
+    let last = trainer.curve.last().unwrap().rate;
+    assert!(last < 0.5 * trainer.settings.rate, "the last rate is {last}");
 }
 
 #[test]
