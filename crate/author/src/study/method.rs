@@ -14,11 +14,11 @@ const PBNS: [usize; 4] = [32; 4];
 pub enum Method {
     /// Plain skinning with the weights of the nearest body vertex.
     Nearest,
-    /// Plain skinning with the smoothed weights that training starts from: `W_C^I`.
+    /// Plain skinning with the weights that training starts from: `W_C^I`, smoothed.
     Skinning,
     /// The network, or what an ablation leaves of it.
     Network(Architecture, Variant),
-    /// An MLP of the pose weighs a basis that is added to the garment at rest, then LBS with `W_C^I`: PBNS's network. Its own
+    /// An MLP of the pose weighs a basis that is added to the garment at rest, then LBS with smoothed `W_C^I`: PBNS's network. Its own
     /// training needs no data; here it learns from ours, as all others do, and its MLP ends without ReLU, as ours does.
     Pbns,
     /// [`super::deepsd`].
@@ -61,16 +61,16 @@ impl Table {
         match self {
             Self::Comparison => vec![
                 entry("skinning-nearest", "plain skinning, nearest vertex", Method::Nearest),
-                entry("skinning", "plain skinning, W_C^I", Method::Skinning),
+                entry("skinning", "plain skinning, smoothed W_C^I", Method::Skinning),
                 entry("pbns", "PBNS-form, supervised", Method::Pbns),
                 entry("deepsd", "DeePSD-form", Method::Deepsd),
                 sized(whole, "network"),
             ],
             Self::Ablation => vec![
-                entry("skinning", "(b) W_C^I alone", Method::Skinning),
+                entry("skinning", "(b) smoothed W_C^I alone", Method::Skinning),
                 entry("no-mesh", "(c) skeleton stream, trained weights", without(&[Part::Mesh])),
                 sized(whole, "(d) whole network"),
-                entry("no-weights", "(e) both streams, W_C^I", without(&[Part::Weights])),
+                entry("no-weights", "(e) both streams, smoothed W_C^I", without(&[Part::Weights])),
                 entry("no-skeleton", "mesh stream, trained weights", without(&[Part::Skeleton])),
             ],
             Self::Sizes => [(5, 64), (32, 128), (100, 256)]

@@ -51,7 +51,11 @@ fn every_form_learns_and_outcomes_are_kept() {
         assert!(moved < 1e-12 && (made.bytes, made.flops) == (again.bytes, again.flops), "{made:?} {again:?}");
     }
     let grid = Grid::new(Table::Ablation, &study, &Table::Ablation.entries()[..1], &outcomes[1..2]).to_string();
-    assert!(grid.contains("| (a) simulation ") && grid.contains("| (b) W_C^I alone ") && grid.contains("0.00 ± 0.00"));
+    assert!(
+        grid.contains("| (a) simulation ")
+            && grid.contains("| (b) smoothed W_C^I alone ")
+            && grid.contains("0.00 ± 0.00")
+    );
     let other = Study::new(&dataset, Settings { epochs: 2, ..settings }, folder.path()).expect("a study");
     let message = other.outcome(&all[0], |_| ()).expect_err("another study").to_string();
     assert!(message.contains("another study") && message.contains("epochs: 2"), "{message}");

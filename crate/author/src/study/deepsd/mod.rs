@@ -1,7 +1,7 @@
 //! The form of DeePSD (Bertiche et al. 2021), its supervised part: descriptors of the garment's vertices at rest, from a graph network;
 //! from them an MLP per vertex makes blend shapes and another one the skin weights; an MLP of the pose weighs the blend shapes.
 //! Descriptors come from graph transformer layers as the network's own. DeePSD's descriptor of the garment as a whole is left out: for
-//! one garment it is a constant. Weights are added to `W_C^I`, as ΔW_C is, not normalised.
+//! one garment it is a constant. Weights are added to smoothed `W_C^I`, as ΔW_C is, not normalised.
 
 mod garment;
 
