@@ -38,6 +38,12 @@ const EMBEDDING: [usize; 2] = [128, 64];
 const VERTEX: usize = 64;
 /// Least standard deviation of a pose number: a joint that hardly moved in training must not amplify.
 const LEAST_STD: f32 = 0.05;
+/// Least share of the cloth that a joint must carry to be heard. What head, hands and feet do tells a shirt nothing, but a network finds
+/// something in it: a T-shirt's validation error (363 poses, 20 epochs) was 11.24 and 11.16 mm with all joints, two seeds, and 9.72 and
+/// 10.16 mm without these.
+const CARRIED: f64 = 1.5e-3;
+/// Standard deviation of the numbers of other joints: the network sees zeros.
+const UNHEARD: f32 = 1e6;
 
 /// The untrained model for a dataset; means and deviations from the training samples alone.
 pub fn initial(setup: &Setup, train: &[&Sample], architecture: Architecture, seed: u64) -> Result<HostModel> {
@@ -53,11 +59,12 @@ pub fn initial(setup: &Setup, train: &[&Sample], architecture: Architecture, see
     let nearest = setup.nearest()?;
     let frames = frames(setup, train)?;
     let inputs = |l: usize| if l == 0 { 3 } else { features };
+    let carried = weights::smooth(setup, &graph, &nearest)?;
     Ok(HostModel {
         sizes: Sizes { vertices: n, joints, embedding, basis, features, heads },
         reference: reference(setup, &graph, &frames)?,
-        rig: standardised(setup, &frames)?,
-        skin: weights::trainable(&graph, &weights::smooth(setup, &graph, &nearest)?),
+        rig: standardised(setup, &frames, &heard(setup, &carried))?,
+        skin: weights::trainable(&graph, &carried),
         triangles: setup.triangles.clone(),
         graph,
         rest: setup.template.clone(),
@@ -101,13 +108,22 @@ fn frames(setup: &Setup, samples: &[&Sample]) -> Result<Vec<BodyFrame>> {
     samples.iter().map(frame).collect()
 }
 
-fn standardised(setup: &Setup, frames: &[BodyFrame]) -> Result<Rig> {
+/// Which joints the network listens to: those that carry cloth, by its skin weights, and obstacles.
+fn heard(setup: &Setup, weights: &[SkinWeights]) -> Vec<bool> {
+    let joints = &setup.description.joints;
+    let mut carried = vec![0.0; joints.len()];
+    weights.iter().flatten().for_each(|(joint, weight)| carried[*joint] += weight);
+    let least = CARRIED * weights.len() as f64;
+    joints.iter().zip(carried).map(|(joint, carried)| carried >= least || is_obstacle(joint)).collect()
+}
+
+fn standardised(setup: &Setup, frames: &[BodyFrame], heard: &[bool]) -> Result<Rig> {
     let mut rig = rig(setup)?;
     rig.range = Range::of(&rig.inverse_bind, frames);
     for i in 0..rig.mean.len() {
         let (mean, std) = moments(frames.iter().map(|frame| f64::from(frame.vector[i])));
         rig.mean[i] = mean;
-        rig.std[i] = std.max(LEAST_STD);
+        rig.std[i] = if heard[i / 12] { std.max(LEAST_STD) } else { UNHEARD };
     }
     Ok(rig)
 }

@@ -165,7 +165,7 @@ fn tiny() -> (HostModel, Setup, Vec<Sample>) {
         surface: Default::default(),
         body: model.reference.rest.clone(),
         body_triangles: Vec::new(),
-        body_weights: vec![vec![(0, 1.0)]; model.sizes.vertices],
+        body_weights: vec![vec![(0, 0.5), (1, 0.3), (2, 0.2)]; model.sizes.vertices],
     };
     (model, setup, samples)
 }

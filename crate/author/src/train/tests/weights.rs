@@ -62,3 +62,14 @@ fn cloth_on_the_skin_keeps_its_weights() {
         assert!((weight - wanted).abs() < 0.05 || (vertex[1] - 0.75).abs() < 0.1, "{vertex:?}: {weight}");
     }
 }
+
+#[test]
+fn joints_that_carry_no_cloth_are_not_heard_unless_they_are_obstacles() {
+    let (_, mut setup, samples) = tiny();
+    setup.body_weights.fill(vec![(0, 1.0)]);
+    setup.description.joints[2] = "Obstacle".to_owned();
+    let samples: Vec<&Sample> = samples.iter().collect();
+    let rig = initial(&setup, &samples, Architecture::default(), 1).unwrap().rig;
+    let told = rig.std.chunks(12).map(|std| std.iter().any(|std| *std < 10.0));
+    assert_eq!(told.collect::<Vec<_>>(), [true, false, true]);
+}
