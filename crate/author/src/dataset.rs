@@ -9,7 +9,7 @@ use crate::{Error, Result};
 use ctsn_core::file::{Tensor, Tensors};
 use ctsn_core::model::Surface;
 use kiddo::{ImmutableKdTree, SquaredEuclidean};
-pub use same::fingerprint;
+pub use same::{digest, fingerprint};
 pub(crate) use sample::paths;
 pub use sample::{Record, Sample, pose_path, twin_path};
 use serde::{Deserialize, Serialize};

@@ -217,6 +217,23 @@ fn arguments_that_are_none_are_refused() {
     }
 }
 
+#[test]
+fn a_bake_keeps_to_its_garment() {
+    let folder = Folder::new();
+    write_character(&folder, |_| ());
+    write_garment(&folder, DVec3::ZERO);
+    let output = folder.run("bake character.glb garment.glb --kind robe -o out.safetensors");
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.code() == Some(2) && message.contains("cannot be used with"), "{message}");
+    std::fs::create_dir_all(folder.path("out.work")).expect("a folder");
+    folder.write("out.work/garment.glb", b"made");
+    folder.write("out.work/garment.txt", b"character.glb of another cut");
+    folder.refuses(
+        "bake character.glb --kind robe -o out.safetensors",
+        &["out.work", "another garment", "of another cut", "Robe"],
+    );
+}
+
 /// Every file of a dataset that the machine has no say in, by its path.
 fn poses_of(folder: &std::path::Path) -> std::collections::BTreeMap<String, Vec<u8>> {
     let mut files = std::collections::BTreeMap::new();

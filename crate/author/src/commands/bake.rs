@@ -1,6 +1,6 @@
 //! `ctsn bake`: simulate, train and evaluate in one go.
 
-use super::{evaluate, garment, simulate, train};
+use super::{evaluate, file_name, garment, simulate, train};
 use anyhow::{Context, Result, ensure};
 use ctsn_author::dataset::{read, write};
 use ctsn_author::garment::Cut;
@@ -50,14 +50,17 @@ pub fn run(arguments: &Arguments) -> Result<()> {
 /// The garment `ctsn garment` makes, kept beside the dataset and made once, with a note of how it was cut.
 fn generated(character: &Path, cut: &Cut, dataset: &Path) -> Result<PathBuf> {
     let [path, note] = ["garment.glb", "garment.txt"].map(|name| dataset.join(name));
-    let wanted = format!("{cut:?}");
+    let wanted = format!("{} {cut:?}", file_name(character));
     if !path.exists() {
         std::fs::create_dir_all(dataset).with_context(|| dataset.display().to_string())?;
         write(&note, wanted.as_bytes())?;
         garment::make(character, cut, &path)?;
     }
-    let found = String::from_utf8(read(&note)?).with_context(|| note.display().to_string())?;
-    let what = "was cut otherwise; name another --output, or delete it";
-    ensure!(found == wanted, "{}: {what}: wanted {wanted}, found {found}", path.display());
+    // An older version left no note.
+    if note.exists() {
+        let found = String::from_utf8_lossy(&read(&note)?).into_owned();
+        let what = "holds poses of another garment; name another --output, or delete this folder";
+        ensure!(found == wanted, "{}: {what}: wanted {wanted}, found {found}", dataset.display());
+    }
     Ok(path)
 }

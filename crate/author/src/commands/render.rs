@@ -20,7 +20,7 @@ pub struct Arguments {
     /// Clip, by name
     #[arg(long)]
     clip: String,
-    /// Frame of the clip, counted at --rate
+    /// Frame of the clip, counted at --rate, or at the dataset's
     #[arg(long)]
     frame: usize,
     /// Frames per second; with --truth, the dataset's
@@ -79,7 +79,8 @@ pub fn run(arguments: &Arguments) -> Result<()> {
 
 /// What the poses of a dataset have in common.
 fn description(folder: &Path) -> Result<Description> {
-    let setup = Setup::read(folder)?.with_context(|| format!("{}: is no dataset", folder.display()))?;
+    let setup = Setup::read(folder)?
+        .with_context(|| format!("{}: holds no setup.safetensors; run `ctsn simulate` first", folder.display()))?;
     Ok(setup.description)
 }
 

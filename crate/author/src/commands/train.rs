@@ -56,7 +56,7 @@ pub struct Settings {
     storage: StorageArgument,
 }
 
-#[derive(Clone, Copy, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
 enum StorageArgument {
     /// 32-bit floats
     F32,
@@ -74,7 +74,8 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     // Before the training: what cannot be made of this body must not be found out after hours.
     let body = body(&dataset.setup, &slices.train)?;
     let mut trainer = arguments.settings.trainer(&dataset.setup, &slices)?;
-    if made_by(&arguments.output, &trainer.key()) {
+    let key = arguments.settings.key(&dataset.setup, &slices, &trainer);
+    if made_by(&arguments.output, &key) {
         println!("{}: has been trained so already; delete it to train anew", arguments.output.display());
         return Ok(());
     }
@@ -89,7 +90,9 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         (_, None) => Err(anyhow!("no epoch was trained: wanted at least one")),
         (end, Some((best, mut model))) => {
             model.body = Some(body);
-            let bytes = arguments.settings.store(&dataset.setup, &slices, &trainer, &best, model);
+            // What diverged is to be tried again.
+            let key = Some(key).filter(|_| !matches!(end, End::Diverged(_)));
+            let bytes = arguments.settings.store(&dataset.setup, &slices, &trainer, &best, model, key);
             dataset::write(&arguments.output, &bytes)?;
             std::fs::remove_file(&files.checkpoint).ok();
             println!("{name}: {} bytes, of epoch {}: {}", bytes.len(), best.epoch, errors(&best));
@@ -126,8 +129,23 @@ impl Settings {
         Ok(Trainer::new(model, setup, &slices.train, settings)?)
     }
 
+    /// What makes the model: the training, what its epoch is chosen by, and how it is stored.
+    fn key(&self, setup: &Setup, slices: &Slices, trainer: &Trainer) -> String {
+        let validation = dataset::fingerprint(setup, &slices.validation);
+        let (training, version) = (trainer.key(), env!("CARGO_PKG_VERSION"));
+        format!("{training} validation {validation:016x} {:?} {version}", self.storage)
+    }
+
     /// The model file: the best epoch's model, and what it was trained on. Nothing in it depends on the hour.
-    fn store(&self, setup: &Setup, slices: &Slices, trainer: &Trainer, best: &Row, mut model: HostModel) -> Vec<u8> {
+    fn store(
+        &self,
+        setup: &Setup,
+        slices: &Slices,
+        trainer: &Trainer,
+        best: &Row,
+        mut model: HostModel,
+        key: Option<String>,
+    ) -> Vec<u8> {
         let part = |part: &Part| format!("{part:?}").to_lowercase();
         let summary = serde_json::json!({
             "character": setup.description.character,
@@ -142,7 +160,7 @@ impl Settings {
             "untrained_validation_metres": trainer.untrained,
             "validation_metres": best.distance,
             "validation_degrees": best.normal,
-            "key": trainer.key(),
+            "key": key,
             "ctsn": env!("CARGO_PKG_VERSION"),
         });
         model.training = Some(summary.to_string());

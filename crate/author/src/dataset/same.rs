@@ -5,13 +5,23 @@ use crate::{Error, Result};
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::Path;
 
+/// Tells these bytes from any others.
+pub fn digest(bytes: &[u8]) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    hasher.write(bytes);
+    hasher.finish()
+}
+
 /// Tells these poses of this setup from any other data.
 pub fn fingerprint(setup: &Setup, samples: &[&Sample]) -> u64 {
     let mut hasher = DefaultHasher::new();
     format!("{:?}", setup.description).hash(&mut hasher);
-    (&setup.triangles, &setup.body_triangles).hash(&mut hasher);
+    (&setup.triangles, &setup.body_triangles, &setup.surface.vertex, &setup.surface.triangles).hash(&mut hasher);
+    for (joint, weight) in setup.body_weights.iter().flatten() {
+        (joint, weight.to_bits()).hash(&mut hasher);
+    }
     let poses = samples.iter().flat_map(|sample| [&sample.joints, &sample.truth]);
-    for values in [&setup.template, &setup.body].into_iter().chain(poses) {
+    for values in [&setup.template, &setup.body, &setup.surface.uv].into_iter().chain(poses) {
         values.iter().for_each(|value| hasher.write_u32(value.to_bits()));
     }
     hasher.finish()
@@ -22,6 +32,10 @@ impl Setup {
     pub fn check_same(&self, wanted: &Self, folder: &Path) -> Result<()> {
         let mut same = wanted.clone();
         same.template.clone_from(&self.template);
+        // An older version wrote none.
+        if self.description.parents.is_empty() {
+            same.description.parents.clear();
+        }
         if *self == same {
             return Ok(());
         }

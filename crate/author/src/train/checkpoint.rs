@@ -4,7 +4,6 @@ use super::{Row, Trainer};
 use crate::dataset::{tensors, write};
 use crate::{Error, Result};
 use ctsn_core::file::{Tensor, Tensors};
-use ctsn_core::model::HostModel;
 use std::path::Path;
 use std::time::Instant;
 
@@ -59,7 +58,6 @@ impl Trainer {
 
     /// What two trainings must have in common to go on as one, and by which their models are the same.
     pub fn key(&self) -> String {
-        let HostModel { sizes, layers, .. } = &self.model;
-        format!("{:?} {sizes:?} {} layers, data {:016x}", self.settings, layers.len(), self.data)
+        format!("{:?} start {:016x} data {:016x}", self.settings, self.start, self.data)
     }
 }

@@ -17,11 +17,11 @@ mod tests;
 mod variant;
 mod weights;
 
-use crate::dataset::{Sample, Setup, fingerprint};
+use crate::dataset::{Sample, Setup, digest, fingerprint};
 use crate::{Error, Result};
 use adam::{Moments, cosine};
 use ctsn_core::device::{Device, Space};
-use ctsn_core::model::HostModel;
+use ctsn_core::model::{HostModel, Storage};
 use ctsn_core::network::{Activations, DeviceModel, Streams, forward};
 pub(crate) use curve::write_curve;
 pub use fit::{End, Files, Row};
@@ -79,6 +79,8 @@ pub struct Loss {
 pub struct Trainer {
     model: HostModel,
     settings: Settings,
+    /// Tells the model before the first step from any other.
+    start: u64,
     /// [`fingerprint`] of the samples.
     data: u64,
     items: Vec<Item>,
@@ -114,6 +116,7 @@ impl Trainer {
             return Err(Error::Training(format!("batch and learning rate must be positive, found {batch} and {rate}")));
         }
         variant.silence(&mut model);
+        let start = digest(&model.to_bytes(Storage::F32));
         let smoother = Smoother::new(model.sizes.vertices, &setup.triangles);
         let items = samples.iter().map(|sample| Item::new(&model, sample, Some(&smoother))).collect::<Result<_>>()?;
         let mut tape = Tape::default();
@@ -137,6 +140,7 @@ impl Trainer {
         Ok(Self {
             model,
             settings,
+            start,
             data: fingerprint(setup, samples),
             items,
             tape,

@@ -41,8 +41,13 @@ fn a_model_and_its_learning_curve_come_out_the_same_twice() {
         lines.map(|line| line.split(',').map(|number| number.parse().expect("a number")).collect()).collect();
     assert!(rows.len() == 3 && rows.iter().all(|row| row.len() == 7 && row[3] > 0.0), "{curve}");
     assert!(!folder.path("out.checkpoint").exists());
+    let shown = folder.accepts(&format!("{TRAIN} --epochs 3"));
+    assert!(shown.contains("has been trained so already"), "{shown}");
+    std::fs::remove_file(folder.path("out.safetensors")).expect("removed");
     folder.accepts(&format!("{TRAIN} --epochs 3"));
     assert!(first == read("out.safetensors"), "the same seed gave another model");
+    folder.accepts(&format!("{TRAIN} --epochs 3 --storage f32"));
+    assert!(read("out.safetensors").len() > first.len(), "wanted another storage, found the model as it was");
     folder.accepts(&format!("{TRAIN} --epochs 2 --without mesh,weights"));
     HostModel::parse(&read("out.safetensors")).expect("an ablated model");
     let shown = folder.accepts(&format!("{TRAIN} --time-budget 0.5s --patience 9999"));
@@ -90,6 +95,8 @@ fn a_diverging_training_says_so() {
     let message = String::from_utf8_lossy(&output.stderr);
     assert!(!output.status.success() && message.contains("diverged"), "{message}");
     assert_eq!(folder.path("out.safetensors").exists(), message.contains("is of the best epoch before"), "{message}");
+    let again = folder.run(&format!("{TRAIN} --learning-rate 30"));
+    assert!(!again.status.success(), "what diverged counts as trained");
     for wrong in ["90", "m", "-1m", "0s", "1d"] {
         let output = folder.run(&format!("{TRAIN} --time-budget={wrong}"));
         let message = String::from_utf8_lossy(&output.stderr);
