@@ -159,6 +159,12 @@ impl Setup {
         Self::from_file(&file).map(Some).map_err(named)
     }
 
+    /// Reads the setup of a dataset `folder` that must be one.
+    pub fn existing(folder: &Path) -> Result<Self> {
+        let reason = "holds no setup.safetensors; run `ctsn simulate` first";
+        Self::read(folder)?.ok_or_else(|| Error::File { path: folder.to_owned(), reason: reason.to_owned() })
+    }
+
     fn from_file(file: &Tensors) -> Result<Self> {
         let description: Description = json(file, "setup")?;
         let joints = description.joints.len();
@@ -241,11 +247,7 @@ impl Setup {
 impl Dataset {
     /// Reads a whole dataset.
     pub fn read(folder: &Path) -> Result<Self> {
-        let missing = || Error::File {
-            path: folder.to_owned(),
-            reason: "holds no setup.safetensors; run `ctsn simulate` first".to_owned(),
-        };
-        let setup = Setup::read(folder)?.ok_or_else(missing)?;
+        let setup = Setup::existing(folder)?;
         let sizes = (setup.description.joints.len(), setup.template.len() / 3);
         let (mut samples, mut rejected) = (Vec::new(), Vec::new());
         for path in paths(&folder.join("poses"))? {

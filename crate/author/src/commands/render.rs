@@ -2,13 +2,13 @@
 
 use super::model;
 use anyhow::{Context, Result, bail};
-use ctsn_author::dataset::{Description, Sample, Setup, pose_path};
+use ctsn_author::dataset::{Sample, Setup, pose_path};
 use ctsn_author::rig::{Character, Pose, joints, vertices};
 use ctsn_author::simulate::body_frame;
 use ctsn_author::{gltf, render};
 use ctsn_core::cpu::Level;
 use ctsn_core::{Predictor, Streams};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Draw front, side and back of a character in a model's predicted cloth
 #[derive(clap::Args)]
@@ -39,8 +39,8 @@ pub struct Arguments {
 
 pub fn run(arguments: &Arguments) -> Result<()> {
     let model = model(&arguments.model)?;
-    let dataset = arguments.truth.as_deref().map(description).transpose()?;
-    let rate = dataset.as_ref().map_or(arguments.rate, |description| description.rate);
+    let dataset = arguments.truth.as_deref().map(Setup::existing).transpose()?;
+    let rate = dataset.as_ref().map_or(arguments.rate, |setup| setup.description.rate);
     let character = gltf::read_character(&arguments.character, rate)?;
     let clip = character.clip(&arguments.clip)?;
     let pose = clip.poses.get(arguments.frame).with_context(|| {
@@ -53,7 +53,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         )
     })?;
     let cloth = match arguments.truth.as_ref().zip(dataset) {
-        Some((folder, description)) => {
+        Some((folder, Setup { description, .. })) => {
             let index = description.clips.iter().position(|name| *name == clip.name);
             let index = index.with_context(|| {
                 format!("{}: no clip {}; it has: {}", folder.display(), clip.name, description.clips.join(", "))
@@ -75,13 +75,6 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     render::render_dressed(&character, pose, Some((&cloth, triangles)), &arguments.output)?;
     println!("{}", arguments.output.display());
     Ok(())
-}
-
-/// What the poses of a dataset have in common.
-fn description(folder: &Path) -> Result<Description> {
-    let setup = Setup::read(folder)?
-        .with_context(|| format!("{}: holds no setup.safetensors; run `ctsn simulate` first", folder.display()))?;
-    Ok(setup.description)
 }
 
 /// The pose in the order of the model's joints.
