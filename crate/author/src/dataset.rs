@@ -3,6 +3,7 @@
 
 mod same;
 mod sample;
+mod split;
 
 use crate::rig::{self, Character, Joint, Mesh, SkinWeights, Surface as Drawn, is_obstacle, strongest};
 use crate::{Error, Result};
@@ -11,8 +12,9 @@ use ctsn_core::model::Surface;
 use kiddo::{ImmutableKdTree, SquaredEuclidean};
 pub use same::{digest, fingerprint};
 pub(crate) use sample::paths;
-pub use sample::{Record, Sample, pose_path, twin_path};
+pub use sample::{Record, Sample, mixed_path, pose_path, twin_path};
 use serde::{Deserialize, Serialize};
+pub use split::Split;
 use std::path::{Path, PathBuf};
 
 /// What the poses of a dataset have in common, besides the meshes.
@@ -75,15 +77,10 @@ pub struct Dataset {
     pub samples: Vec<Sample>,
     /// The poses that were left out, in the same order.
     pub rejected: Vec<Record>,
-}
-
-/// Which poses of a dataset.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Split {
-    /// What is learned from.
-    Train,
-    /// The last tenth of the clips, unseen during training; with fewer than ten clips, the last tenth of each in time.
-    Test,
+    /// Accepted mixed poses, to learn from only.
+    pub mixed: Vec<Sample>,
+    /// How many mixed poses were left out.
+    pub mixed_rejected: usize,
 }
 
 /// Path of the setup file of dataset `folder`.
@@ -254,26 +251,17 @@ impl Dataset {
             let sample = Sample::read(&path, sizes.0, sizes.1)?;
             if sample.record.rejected.is_none() { samples.push(sample) } else { rejected.push(sample.record) }
         }
+        let mut mixed = Vec::new();
+        if folder.join("mixed").exists() {
+            let read = |path: &PathBuf| Sample::read(path, sizes.0, sizes.1);
+            mixed = paths(&folder.join("mixed"))?.iter().map(read).collect::<Result<_>>()?;
+        }
+        let tried = mixed.len();
+        mixed.retain(|sample| sample.record.rejected.is_none());
         let clips = setup.description.clips.len();
         if let Some(record) = samples.iter().map(|sample| &sample.record).chain(&rejected).find(|r| r.clip >= clips) {
             return Err(Error::Dataset(format!("a pose names clip {}, there are {clips}", record.clip)));
         }
-        Ok(Self { rejected, setup, samples })
-    }
-
-    /// The samples of one split.
-    pub fn split(&self, split: Split) -> Vec<&Sample> {
-        let clips = self.setup.description.clips.len();
-        let mut lengths = vec![0; clips];
-        self.samples.iter().for_each(|sample| {
-            let length = &mut lengths[sample.record.clip];
-            *length = (*length).max(sample.record.frame + 1);
-        });
-        // A few clips cannot be parted: the test would see motion of one kind only.
-        let train = |sample: &&Sample| match clips {
-            0..10 => sample.record.frame * 10 < lengths[sample.record.clip] * 9,
-            _ => sample.record.clip < clips - clips.div_ceil(10),
-        };
-        self.samples.iter().filter(|sample| train(sample) == (split == Split::Train)).collect()
+        Ok(Self { rejected, setup, samples, mixed_rejected: tried - mixed.len(), mixed })
     }
 }

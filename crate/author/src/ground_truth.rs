@@ -8,8 +8,9 @@ mod shard;
 mod tests;
 mod timing;
 
-use crate::dataset::{Record, Sample, Setup, pose_path, twin_path};
-use crate::rig::{Pose, joints, numbers, vertices};
+use crate::dataset::{Record, Sample, Setup, Split, mixed_path, pose_path, twin_path};
+use crate::motion::mixed;
+use crate::rig::{Character, Pose, joints, numbers, vertices};
 use crate::simulate::Simulator;
 use crate::{Error, Result};
 use glam::DVec3;
@@ -20,12 +21,22 @@ use std::path::{Path, PathBuf};
 pub use timing::seconds;
 use timing::{Stopwatch, Timing};
 
+/// Which pose of a clip or between the clips.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// A frame as it is.
+    Frame,
+    /// A frame a little changed, for the noise floor.
+    Twin,
+    /// Limbs of several frames, [`mixed`]; its number stands for the frame.
+    Mixed,
+}
+
 /// A pose to simulate, and where it goes.
-struct Task<'a> {
+struct Task {
+    kind: Kind,
     clip: usize,
     frame: usize,
-    twin: bool,
-    pose: &'a Pose,
     path: PathBuf,
 }
 
@@ -36,8 +47,8 @@ pub struct Run<'a> {
     simulator: Simulator,
     /// `T_C` as the setup keeps it, metres [n].
     template: Vec<DVec3>,
-    tasks: Vec<Task<'a>>,
-    /// Poses and twins of this shard that were there already.
+    tasks: Vec<Task>,
+    /// Poses, twins and mixed poses of this shard that were there already.
     pub found: usize,
 }
 
@@ -71,45 +82,60 @@ impl<'a> Run<'a> {
         Ok(Self { found: all - tasks.len(), request, folder: folder.to_owned(), simulator, template, tasks })
     }
 
-    /// Poses and twins left to simulate.
+    /// Poses, twins and mixed poses left to simulate.
     pub fn left(&self) -> usize {
         self.tasks.len()
     }
 
-    /// Simulates what is left. `progress(record, twin)` follows every pose; a twin serves the noise floor only.
-    pub fn simulate(&self, progress: impl Fn(&Record, bool) + Sync) -> Result<()> {
+    /// Simulates what is left. `progress(record, kind)` follows every pose.
+    pub fn simulate(&self, progress: impl Fn(&Record, Kind) + Sync) -> Result<()> {
         let timing = Timing::open(&self.folder, self.request.shard)?;
+        let character = self.request.character;
+        let learned = learned(character);
         let run = |task: &Task| -> Result<()> {
             let start = Stopwatch::start();
-            let turned = task.twin.then(|| noise::turned(self.request.character, task.pose, task.clip, task.frame));
-            let pose = turned.as_ref().unwrap_or(task.pose);
-            let outcome = self.simulator.simulate(&self.template, pose);
+            let frame = |task: &Task| &character.clips[task.clip].poses[task.frame];
+            let pose = match task.kind {
+                Kind::Frame => frame(task).clone(),
+                Kind::Twin => noise::turned(character, frame(task), task.clip, task.frame),
+                Kind::Mixed => mixed(character, &learned, task.frame),
+            };
+            let outcome = self.simulator.simulate(&self.template, &pose);
             let record = Record::new(task.clip, task.frame, &outcome);
-            let sample = Sample { record, joints: joints(pose), truth: numbers(&outcome.positions) };
+            let sample = Sample { record, joints: joints(&pose), truth: numbers(&outcome.positions) };
             sample.write(&task.path)?;
             timing.add(&sample.record, start.elapsed())?;
-            progress(&sample.record, task.twin);
+            progress(&sample.record, task.kind);
             Ok(())
         };
         self.tasks.par_iter().with_max_len(1).try_for_each(run)
     }
 }
 
-/// The poses and twins of the request's shard, in [`order`].
-fn tasks<'a>(request: &Request<'a>, poses: usize, folder: &Path) -> Vec<Task<'a>> {
+/// The frames that are learned from: mixed poses are made of nothing else, so that what is unseen stays so.
+fn learned(character: &Character) -> Vec<&Pose> {
+    let clips = &character.clips;
+    let train =
+        |clip: usize, frame: usize| Split::of(clips.len(), clip, frame, clips[clip].poses.len()) == Split::Train;
+    let frames = |clip: usize| clips[clip].poses.iter().enumerate().filter(move |(frame, _)| train(clip, *frame));
+    (0..clips.len()).flat_map(frames).map(|(_, pose)| pose).collect()
+}
+
+/// The poses and twins of the request's shard, in [`order`], then its mixed poses.
+fn tasks(request: &Request, poses: usize, folder: &Path) -> Vec<Task> {
     let clips = request.character.clips.iter().enumerate();
-    let frames = clips
-        .flat_map(|(clip, sampled)| sampled.poses.iter().enumerate().map(move |(frame, pose)| (clip, frame, pose)));
-    let frames: Vec<_> = frames.collect();
+    let frames: Vec<_> = clips.flat_map(|(clip, sampled)| (0..sampled.poses.len()).map(move |f| (clip, f))).collect();
     let chosen = order(poses).into_iter().take(request.poses.unwrap_or(poses)).enumerate();
     let mut tasks = Vec::new();
     for (index, at) in chosen.filter(|(index, _)| request.shard.holds(*index)) {
-        let (clip, frame, pose) = frames[at];
-        tasks.push(Task { clip, frame, twin: false, pose, path: pose_path(folder, clip, frame) });
+        let (clip, frame) = frames[at];
+        tasks.push(Task { kind: Kind::Frame, clip, frame, path: pose_path(folder, clip, frame) });
         if index < request.twins {
-            tasks.push(Task { clip, frame, twin: true, pose, path: twin_path(folder, clip, frame) });
+            tasks.push(Task { kind: Kind::Twin, clip, frame, path: twin_path(folder, clip, frame) });
         }
     }
+    let mixed = |frame| Task { kind: Kind::Mixed, clip: 0, frame, path: mixed_path(folder, frame) };
+    tasks.extend((0..request.mixed).filter(|number| request.shard.holds(*number)).map(mixed));
     tasks
 }
 

@@ -72,6 +72,8 @@ pub struct Report {
     pub kept: usize,
     /// Frames not simulated yet.
     pub missing: usize,
+    /// Mixed poses kept and left out.
+    pub mixed: [usize; 2],
     /// Frames left out, by reason.
     pub reasons: BTreeMap<String, usize>,
     /// Every frame left out.
@@ -127,6 +129,7 @@ impl Report {
             frames,
             kept,
             missing: frames - kept - rejected,
+            mixed: [dataset.mixed.len(), dataset.mixed_rejected],
             reasons,
             left_out: dataset.rejected.iter().map(left_out).collect(),
             seconds: Spread::of(seconds(folder)?),
@@ -196,6 +199,11 @@ impl std::fmt::Display for Report {
         writeln!(f, "               {kept} kept, {} left out, {missing} not simulated yet", self.left_out.len())?;
         for (reason, count) in &self.reasons {
             writeln!(f, "               {count} left out: {reason}")?;
+        }
+        if let [kept, left_out] = self.mixed
+            && kept + left_out > 0
+        {
+            writeln!(f, "  mixed poses  {kept} kept, {left_out} left out")?;
         }
         writeln!(f, "{:<15}{:>10}{:>10}{:>10}", "", "median", "95 %", "greatest")?;
         let rows = [

@@ -27,7 +27,7 @@ use std::time::Duration;
 #[derive(clap::Args, Clone)]
 pub struct Network {
     /// Size of the pose embedding, m
-    #[arg(long, default_value_t = 32)]
+    #[arg(long, default_value_t = 64)]
     embedding: usize,
     /// Mesh basis matrices, k
     #[arg(long, default_value_t = 64)]

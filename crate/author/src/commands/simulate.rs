@@ -4,7 +4,7 @@ use super::{bar, file_name, remaining};
 use anyhow::{Result, bail};
 use ctsn_author::garment;
 use ctsn_author::gltf;
-use ctsn_author::ground_truth::{Request, Run, Shard};
+use ctsn_author::ground_truth::{Kind, Request, Run, Shard};
 use ctsn_author::report::Report;
 use ctsn_author::rig::Character;
 use ctsn_author::simulate::{Material, Settings};
@@ -46,6 +46,10 @@ pub struct Options {
     /// Simulate only this many of the frames, evenly spread over the clips; a greater number adds to them. Default: all
     #[arg(long, value_name = "N")]
     pub poses: Option<usize>,
+    /// Simulate this many mixed poses besides, limbs of some frames on the trunk of another, drawn from what is learned from: motion of
+    /// great variety teaches more than more frames of the same. A greater number adds to them
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub mixed: usize,
     /// Clip to use, by name; may be given several times. Default: all
     #[arg(long = "clip")]
     pub clips: Vec<String>,
@@ -76,6 +80,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         settings: Settings { attached: garment.pins.clone(), pinched: options.pinched, ..Settings::default() },
         shard: *shard,
         poses: options.poses,
+        mixed: options.mixed,
         twins: options.noise_floor,
     };
     let work = Run::new(request, output)?;
@@ -108,12 +113,17 @@ fn character(path: &Path, options: &Options) -> Result<Character> {
 fn follow(work: &Run, character: &Character) -> Result<()> {
     let bar = bar(work.left(), "simulate");
     let every = (work.left() as u64 / 20).max(1);
-    work.simulate(|record, twin| {
+    work.simulate(|record, kind| {
         bar.inc(1);
         if let Some(reason) = &record.rejected {
-            let (clip, twin) = (&character.clips[record.clip].name, if twin { " (twin)" } else { "" });
+            let frame = record.frame;
+            let pose = match kind {
+                Kind::Frame => format!("{} frame {frame}", character.clips[record.clip].name),
+                Kind::Twin => format!("{} frame {frame} (twin)", character.clips[record.clip].name),
+                Kind::Mixed => format!("mixed pose {frame}"),
+            };
             // `println` of a bar that is not drawn, in a log file say, prints nothing.
-            bar.suspend(|| eprintln!("  left out: {clip} frame {}{twin}: {reason}", record.frame));
+            bar.suspend(|| eprintln!("  left out: {pose}: {reason}"));
         }
         if bar.is_hidden() && bar.position().is_multiple_of(every) {
             let left = remaining(bar.elapsed(), bar.position(), work.left() as u64);

@@ -78,6 +78,11 @@ pub fn twin_path(folder: &Path, clip: usize, frame: usize) -> PathBuf {
     folder.join("twins").join(format!("{clip:03}-{frame:05}.safetensors"))
 }
 
+/// Path of mixed pose `number`.
+pub fn mixed_path(folder: &Path, number: usize) -> PathBuf {
+    folder.join("mixed").join(format!("{number:05}.safetensors"))
+}
+
 /// The files of poses in `folder`, in the order of clip and frame.
 pub fn paths(folder: &Path) -> Result<Vec<PathBuf>> {
     let io = |source| Error::Io { path: folder.to_owned(), source };

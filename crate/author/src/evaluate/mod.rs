@@ -110,6 +110,7 @@ pub fn unseen(dataset: &Dataset, split: Split) -> Result<Vec<&Sample>> {
         let (poses, clips) = (dataset.samples.len(), dataset.setup.description.clips.len());
         let wanted = match split {
             Split::Train => "poses to learn from",
+            Split::Validation => "poses to validate",
             Split::Test => "unseen poses in the last tenth of the clips (with fewer than ten clips: of each)",
         };
         return Err(Error::Dataset(format!("wanted {wanted}, found none: {poses} poses of {clips} clips in all")));

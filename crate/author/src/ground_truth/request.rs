@@ -22,6 +22,8 @@ pub struct Request<'a> {
     pub shard: Shard,
     /// How many of the clips' frames to simulate, evenly spread, more adding to fewer; `None`: all.
     pub poses: Option<usize>,
+    /// How many mixed poses to simulate besides, to learn from.
+    pub mixed: usize,
     /// Poses to simulate a second time, a little changed, for the noise floor.
     pub twins: usize,
 }

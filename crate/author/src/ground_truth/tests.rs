@@ -61,6 +61,7 @@ fn request<'a>(character: &'a Character, garment: &'a Garment) -> Request<'a> {
         settings: Settings::default(),
         shard: Shard::WHOLE,
         poses: None,
+        mixed: 0,
         twins: 0,
     }
 }
@@ -104,7 +105,7 @@ fn more_poses_add_to_fewer_and_any_number_is_evenly_spread() {
     let request = |poses| Request { poses: Some(poses), twins: 4, ..request(&character, &garment) };
     let [fewer, more] = [20, 50].map(|poses| tasks(&request(poses), 60, Path::new("")));
     assert_eq!([fewer.len(), more.len()], [24, 54]);
-    assert!(fewer.iter().zip(&more).all(|(a, b)| (a.frame, a.twin) == (b.frame, b.twin)));
+    assert!(fewer.iter().zip(&more).all(|(a, b)| (a.frame, a.kind) == (b.frame, b.kind)));
 }
 
 #[test]
@@ -121,4 +122,28 @@ fn a_twin_turns_every_joint_by_half_a_degree() {
     }
     assert_eq!(twin, noise::turned(&character, &pose, 3, 14));
     assert_ne!(twin, noise::turned(&character, &pose, 3, 15));
+}
+
+#[test]
+fn mixed_poses_are_made_of_what_is_learned_from() {
+    let (mut character, garment) = scene();
+    let place = |clip: usize, frame: usize| DAffine3::from_translation(DVec3::new(clip as f64, frame as f64, 0.0));
+    let clip = |clip: usize, frames: usize| {
+        let poses = (0..frames).map(|frame| vec![place(clip, frame); 2]).collect();
+        Clip { name: format!("clip {clip}"), rate: 7.3, poses }
+    };
+    character.clips = (0..12).map(|i| clip(i, 3)).collect();
+    let places = |character: &Character| -> Vec<(usize, usize)> {
+        let hips = learned(character).into_iter().map(|pose| pose[0].translation);
+        hips.map(|hip| (hip.x as usize, hip.y as usize)).collect()
+    };
+    let all = places(&character);
+    assert_eq!(all.len(), 27, "12 clips of three frames, two unseen, one to validate");
+    assert!(all.iter().all(|(clip, _)| *clip < 10 && *clip != 4), "{all:?}");
+    character.clips = vec![clip(0, 100)];
+    let all = places(&character);
+    assert_eq!((all.len(), all.last()), (81, Some(&(0, 80))), "of few clips, the first frames");
+    let request = |mixed| Request { mixed, shard: "1/2".parse().unwrap(), ..request(&character, &garment) };
+    let mixed = |tasks: Vec<Task>| tasks.into_iter().filter(|task| task.kind == Kind::Mixed).map(|task| task.frame);
+    assert_eq!(mixed(tasks(&request(6), 100, Path::new(""))).collect::<Vec<_>>(), [1, 3, 5]);
 }

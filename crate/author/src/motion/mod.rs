@@ -3,12 +3,14 @@
 mod bones;
 mod curve;
 pub mod humanoid;
+mod mixed;
 pub mod quadruped;
 mod rigid;
 pub mod swimmer;
 
 use crate::rig::{Character, Clip, Pose};
 use crate::{Error, Result};
+pub use mixed::mixed;
 
 /// Poses per second of the project's own characters.
 pub const RATE: f64 = 30.0;

@@ -20,7 +20,7 @@ fn dataset() -> Dataset {
         let posed = cloth.pose_body(&pose).into_iter().map(wider).collect::<Vec<_>>();
         sample.truth = crate::rig::numbers(&posed);
     }
-    Dataset { setup, samples, rejected: Vec::new() }
+    Dataset { setup, samples, rejected: Vec::new(), mixed: Vec::new(), mixed_rejected: 0 }
 }
 
 #[test]

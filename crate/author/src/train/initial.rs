@@ -1,7 +1,7 @@
 //! The model before its first step: everything that is not learned, and seeded initial weights.
 //! The mesh stream sees the body vertex nearest to each cloth vertex (KD-tree). network.md §3, §4.
 
-use super::weights;
+use super::{limbs, weights};
 use crate::dataset::{Sample, Setup};
 use crate::rig::{SkinWeights, is_obstacle};
 use crate::{Error, Result};
@@ -28,12 +28,10 @@ pub struct Architecture {
 
 impl Default for Architecture {
     fn default() -> Self {
-        Self { embedding: 32, basis: 64, layers: 2, heads: 4, features: 64 }
+        Self { embedding: 64, basis: 64, layers: 2, heads: 4, features: 64 }
     }
 }
 
-/// Hidden layers of Φ.
-const EMBEDDING: [usize; 2] = [128, 64];
 /// Hidden layer of the vertex-level MLP.
 const VERTEX: usize = 64;
 /// Least standard deviation of a pose number: a joint that hardly moved in training must not amplify.
@@ -59,16 +57,18 @@ pub fn initial(setup: &Setup, train: &[&Sample], architecture: Architecture, see
     let nearest = setup.nearest()?;
     let frames = frames(setup, train)?;
     let inputs = |l: usize| if l == 0 { 3 } else { features };
-    let carried = weights::smooth(setup, &graph, &nearest)?;
+    let weights = weights::smooth(setup, &graph, &nearest)?;
+    let (carried, heard) = heard(setup, &weights);
+    let parts = limbs::parts(&setup.description.parents, &carried, &heard);
     Ok(HostModel {
         sizes: Sizes { vertices: n, joints, embedding, basis, features, heads },
         reference: reference(setup, &graph, &frames)?,
-        rig: standardised(setup, &frames, &heard(setup, &carried))?,
-        skin: weights::trainable(&graph, &carried),
+        rig: standardised(setup, &frames, &heard)?,
+        skin: weights::trainable(&graph, &weights),
         triangles: setup.triangles.clone(),
         graph,
         rest: setup.template.clone(),
-        embedding: mlp(&[12 * joints, EMBEDDING[0], EMBEDDING[1], embedding], &mut rng),
+        embedding: limbs::embedding(&parts, embedding, &mut rng),
         skeleton: small(n * 3 * embedding, &mut rng),
         layers: (0..layers).map(|l| layer(inputs(l), features, &mut rng)).collect(),
         vertex: mlp(&[features, VERTEX, basis], &mut rng),
@@ -108,13 +108,15 @@ fn frames(setup: &Setup, samples: &[&Sample]) -> Result<Vec<BodyFrame>> {
     samples.iter().map(frame).collect()
 }
 
-/// Which joints the network listens to: those that carry cloth, by its skin weights, and obstacles.
-fn heard(setup: &Setup, weights: &[SkinWeights]) -> Vec<bool> {
+/// How much cloth each joint carries, in vertices, by the cloth's skin weights, and which joints the network therefore listens to:
+/// obstacles, too.
+fn heard(setup: &Setup, weights: &[SkinWeights]) -> (Vec<f64>, Vec<bool>) {
     let joints = &setup.description.joints;
     let mut carried = vec![0.0; joints.len()];
     weights.iter().flatten().for_each(|(joint, weight)| carried[*joint] += weight);
     let least = CARRIED * weights.len() as f64;
-    joints.iter().zip(carried).map(|(joint, carried)| carried >= least || is_obstacle(joint)).collect()
+    let heard = joints.iter().zip(&carried).map(|(joint, carried)| *carried >= least || is_obstacle(joint)).collect();
+    (carried, heard)
 }
 
 fn standardised(setup: &Setup, frames: &[BodyFrame], heard: &[bool]) -> Result<Rig> {
@@ -185,7 +187,7 @@ fn small(length: usize, rng: &mut fastrand::Rng) -> Vec<f32> {
 }
 
 /// PyTorch's default: uniform in ±1/√inputs.
-fn linear(inputs: usize, outputs: usize, rng: &mut fastrand::Rng) -> Linear<Vec<f32>> {
+pub(super) fn linear(inputs: usize, outputs: usize, rng: &mut fastrand::Rng) -> Linear<Vec<f32>> {
     let bound = 1.0 / (inputs as f32).sqrt();
     let mut uniform = |length: usize| (0..length).map(|_| (rng.f32() * 2.0 - 1.0) * bound).collect();
     Linear { weight: uniform(inputs * outputs), bias: uniform(outputs), inputs, outputs }

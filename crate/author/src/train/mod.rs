@@ -8,6 +8,7 @@ mod fit;
 pub mod gradient;
 mod initial;
 pub(crate) mod item;
+mod limbs;
 mod operation;
 mod slice;
 mod smooth;
@@ -87,6 +88,8 @@ pub struct Trainer {
     tape: Tape,
     shared: Shared,
     parameters: Vec<Id>,
+    /// Per parameter array, the entries that stay zero: between the parts of Φ, [`limbs`].
+    silent: Vec<Vec<usize>>,
     moments: Vec<Moments>,
     activations: Activations<Id>,
     coarse: Option<Id>,
@@ -121,8 +124,8 @@ impl Trainer {
         let items = samples.iter().map(|sample| Item::new(&model, sample, Some(&smoother))).collect::<Result<_>>()?;
         let mut tape = Tape::default();
         let recorded = upload(&model, &mut tape);
-        let learns = |(i, id): (usize, &Id)| variant.learns(i).then_some(*id);
-        let parameters: Vec<Id> = recorded.parameters().into_iter().enumerate().filter_map(learns).collect();
+        let learning = recorded.parameters().into_iter().enumerate().filter(|(i, _)| variant.learns(*i));
+        let (silent, parameters): (Vec<_>, Vec<Id>) = learning.map(|(i, id)| (silent(&model, i), *id)).unzip();
         let shared = tape.seal(&parameters.iter().collect::<Vec<_>>());
         let mut activations = Activations::new(&model, |_, length| tape.buffer(&vec![0.0; length]));
         let streams = if variant.mesh { Streams::Both } else { Streams::Skeleton };
@@ -146,6 +149,7 @@ impl Trainer {
             tape,
             shared,
             parameters,
+            silent,
             moments,
             activations,
             coarse,
@@ -231,7 +235,9 @@ impl Trainer {
         let losses: Vec<Vec<Loss>> = shares.map(run).collect();
         for (i, (id, moments)) in self.parameters.iter().zip(&mut self.moments).enumerate() {
             let gradients: Vec<&[f32]> = self.sums.iter().map(|sums| sums[i].as_slice()).collect();
-            moments.step(done + 1, rate, &gradients, self.shared.get_mut(*id));
+            let parameter = self.shared.get_mut(*id);
+            moments.step(done + 1, rate, &gradients, parameter);
+            self.silent[i].iter().for_each(|entry| parameter[*entry] = 0.0);
         }
         let count = batch.len() as f32;
         let sum = |part: fn(&Loss) -> f32| losses.iter().flatten().map(part).sum::<f32>() / count;
@@ -270,6 +276,14 @@ impl Trainer {
         learning.zip(parameters).for_each(|((_, array), values)| array.copy_from_slice(values));
         model
     }
+}
+
+/// The entries of array `i` of [`Model::parameters`](ctsn_core::model::Model::parameters) that stay zero.
+fn silent(model: &HostModel, i: usize) -> Vec<usize> {
+    // W_C, B and M, then weight and bias of each layer of Φ.
+    let layer = i.checked_sub(3).filter(|i| i.is_multiple_of(2)).and_then(|i| model.embedding.get(i / 2));
+    let weights = layer.map_or(&[][..], |layer| &layer.weight);
+    (0..weights.len()).filter(|entry| weights[*entry] == 0.0).collect()
 }
 
 pub(crate) fn upload(model: &HostModel, tape: &mut Tape) -> DeviceModel<Tape> {

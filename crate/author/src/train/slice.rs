@@ -9,9 +9,9 @@ const POSES: usize = 50;
 /// The training split in two.
 #[derive(Clone, Debug)]
 pub struct Slices<'a> {
-    /// What is learned from.
+    /// What is learned from, mixed poses last.
     pub train: Vec<&'a Sample>,
-    /// What is predicted after every epoch: every tenth training clip; with fewer than ten clips, the last tenth of each.
+    /// What is predicted after every epoch.
     pub validation: Vec<&'a Sample>,
 }
 
@@ -24,18 +24,9 @@ pub fn slices(dataset: &Dataset) -> Result<Slices<'_>> {
             "wanted at least {POSES} poses, found {poses} ({rejected} were left out by the simulation)"
         )));
     }
-    let samples = dataset.split(Split::Train);
-    let mut lengths = vec![0; clips];
-    samples.iter().for_each(|sample| {
-        let length = &mut lengths[sample.record.clip];
-        *length = (*length).max(sample.record.frame + 1);
-    });
-    let watched = |sample: &&Sample| match clips {
-        0..10 => sample.record.frame * 10 >= lengths[sample.record.clip] * 9,
-        // Spread over the clips: neighbours are often of one kind.
-        _ => sample.record.clip % 10 == 4,
-    };
-    let (validation, train): (Vec<_>, Vec<_>) = samples.into_iter().partition(watched);
+    let mut train = dataset.split(Split::Train);
+    train.extend(&dataset.mixed);
+    let validation = dataset.split(Split::Validation);
     for (name, split) in [("training", &train), ("validation", &validation)] {
         if split.is_empty() {
             return Err(Error::Dataset(format!("the {name} split is empty: {poses} poses of {clips} clips in all")));

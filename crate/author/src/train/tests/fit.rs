@@ -142,6 +142,24 @@ fn an_ablation_learns_what_is_left() {
     assert!(trainer(Settings::default()).0.parameters.len() > 10);
 }
 
+#[test]
+fn parts_of_the_embedding_stay_deaf_to_each_other() {
+    let (mut setup, samples) = synthetic::dataset(60, 4, 8);
+    // A trunk of two joints with two limbs of one.
+    setup.description.parents = vec![None, Some(0), Some(1), Some(1)];
+    let samples: Vec<&Sample> = samples.iter().collect();
+    let architecture = Architecture { embedding: 8, basis: 16, layers: 2, heads: 2, features: 8 };
+    let model = initial(&setup, &samples, architecture, 1).unwrap();
+    let zeros = |model: &HostModel| -> Vec<bool> {
+        model.embedding.iter().flat_map(|layer| &layer.weight).map(|weight| *weight == 0.0).collect()
+    };
+    let before = zeros(&model);
+    assert!(before.iter().filter(|zero| **zero).count() > before.len() / 2, "three parts");
+    let mut trainer = Trainer::new(model, &setup, &samples, Settings::default()).unwrap();
+    trainer.epoch(|_, _, _| {}).unwrap();
+    assert_eq!(zeros(&trainer.model()), before);
+}
+
 /// Poses of `clips` clips of `frames` frames each.
 fn dataset(clips: usize, frames: usize) -> Dataset {
     let (mut setup, samples) = synthetic::dataset(60, 3, clips * frames);
@@ -150,7 +168,8 @@ fn dataset(clips: usize, frames: usize) -> Dataset {
         (sample.record.clip, sample.record.frame) = (i / frames, i % frames);
         sample
     };
-    Dataset { setup, samples: samples.into_iter().enumerate().map(place).collect(), rejected: Vec::new() }
+    let samples = samples.into_iter().enumerate().map(place).collect();
+    Dataset { setup, samples, rejected: Vec::new(), mixed: Vec::new(), mixed_rejected: 0 }
 }
 
 #[test]
