@@ -1,7 +1,7 @@
 // npm run data: simulates the project's pairs of character and garment into out/pairs, with a report and a contact sheet of each.
 //   npm run data                           all ten pairs, 80 poses each
 //   npm run data -- andy-tshirt fox-cape   only these
-//   npm run data -- --full                 three of them at full size, 1,300 poses each
+//   npm run data -- --full                 three of them at full size: 1,300 poses each, and mixed ones to learn from
 //   npm run data -- --on figure.glb --kind tshirt   a character of your own, with its own clips
 // Everything already there is kept: a run that was cut off goes on where it stopped.
 import { existsSync, mkdirSync } from 'node:fs';
@@ -9,16 +9,16 @@ import { basename } from 'node:path';
 import { parseArgs } from 'node:util';
 import { Stop, at, main, need, say } from './step.mjs';
 
-/** The pairs, and whether they are wanted at full size, too. */
+/** The pairs; of those that are wanted at full size, too, how many mixed poses. */
 const PAIRS = {
-  'andy-tshirt': { full: true },
+  'andy-tshirt': { mixed: 300 },
   'andy-dress': {},
-  'qman-robe': { full: true },
+  'qman-robe': { mixed: 1150 },
   'qman-tshirt': {},
   'monster-robe': {},
   'dolphin-vest': {},
   'cat-coat': {},
-  'fox-cape': { full: true },
+  'fox-cape': { mixed: 400 },
   'sphere-sheet': {},
   'box-sheet': {},
 };
@@ -33,15 +33,15 @@ const PINCHED = { own: '0', others: '0.03' };
 
 const ctsn = (...list) => need(at('target/release/ctsn'), list);
 
-async function simulate(character, kind, poses, pinched, name) {
+async function simulate(character, kind, poses, mixed, pinched, name) {
   const garment = at(`out/pairs/${name}.glb`);
   const data = at(`out/pairs/${name}`);
   say(name);
   if (!existsSync(garment)) {
     await ctsn('garment', character, '--kind', kind, '--vertices', VERTICES, '-o', garment);
   }
-  const sampling = ['--rate', RATE, '--poses', poses, '--noise-floor', TWINS, '--pinched', pinched].map(String);
-  await ctsn('simulate', character, garment, ...sampling, '-o', data);
+  const sampling = ['--rate', RATE, '--poses', poses, '--mixed', mixed, '--noise-floor', TWINS, '--pinched', pinched];
+  await ctsn('simulate', character, garment, ...sampling.map(String), '-o', data);
   await ctsn('sheet', data, character, '-o', `${data}.png`);
 }
 
@@ -55,14 +55,14 @@ await main(async () => {
   const poses = values.full ? POSES.full : POSES.small;
   if (values.on) {
     const kind = values.kind ?? 'tshirt';
-    return simulate(values.on, kind, poses, PINCHED.others, `${basename(values.on, '.glb')}-${kind}`);
+    return simulate(values.on, kind, poses, 0, PINCHED.others, `${basename(values.on, '.glb')}-${kind}`);
   }
-  const all = Object.keys(PAIRS).filter((name) => !values.full || PAIRS[name].full);
+  const all = Object.keys(PAIRS).filter((name) => !values.full || PAIRS[name].mixed);
   for (const name of positionals.length > 0 ? positionals : all) {
     if (!PAIRS[name]) throw new Stop(`no pair ${name}; wanted one of: ${Object.keys(PAIRS).join(', ')}`);
     const [figure, kind] = name.split('-');
     const character = at(`out/pairs/${figure}.glb`);
     if (!existsSync(character)) await ctsn('character', figure, '-o', character);
-    await simulate(character, kind, poses, PINCHED.own, name);
+    await simulate(character, kind, poses, values.full ? (PAIRS[name].mixed ?? 0) : 0, PINCHED.own, name);
   }
 });

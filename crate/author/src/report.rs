@@ -34,7 +34,7 @@ pub struct LeftOut {
     pub reason: String,
 }
 
-/// The vertices of the kept poses against the body, looked at again.
+/// The vertices of the kept poses, mixed ones too, against the body, looked at again.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Penetration {
     /// Vertices inside the body, all poses together.
@@ -104,12 +104,12 @@ impl Report {
     /// The report of dataset `folder`.
     pub fn new(folder: &Path) -> Result<Self> {
         let dataset = Dataset::read(folder)?;
-        let (setup, samples) = (&dataset.setup, &dataset.samples);
+        let setup = &dataset.setup;
         let description = setup.description.clone();
-        let (kept, rejected) = (samples.len(), dataset.rejected.len());
+        let (kept, rejected) = (dataset.samples.len(), dataset.rejected.len());
         let frames = description.frames.iter().sum::<usize>().max(kept + rejected);
-        let over =
-            |figure: fn(&Record) -> f64| Spread::of(samples.iter().map(|sample| figure(&sample.record)).collect());
+        let records = || dataset.kept().map(|sample| &sample.record);
+        let over = |figure: fn(&Record) -> f64| Spread::of(records().map(figure).collect());
         let left_out = |record: &Record| LeftOut {
             clip: description.clips[record.clip].clone(),
             frame: record.frame,
@@ -119,7 +119,7 @@ impl Report {
         for reason in dataset.rejected.iter().filter_map(|record| record.rejected.as_deref()) {
             *reasons.entry(kind(reason)).or_default() += 1;
         }
-        let least = samples.iter().map(|sample| sample.record.distance).fold(f64::INFINITY, f64::min);
+        let least = records().map(|record| record.distance).fold(f64::INFINITY, f64::min);
         Ok(Self {
             vertices: setup.template.len() / 3,
             triangles: setup.triangles.len() / 3,
@@ -137,13 +137,10 @@ impl Report {
             drift: over(|record| 1e3 * record.drift),
             stretch_p99: over(|record| record.stretch_p99),
             stretch: over(|record| record.stretch),
-            least_distance: if kept > 0 { 1e3 * least } else { 0.0 },
+            least_distance: if least.is_finite() { 1e3 * least } else { 0.0 },
             penetration: penetration(&dataset)?,
-            lifted: [
-                samples.iter().map(|sample| sample.record.lifted).sum(),
-                samples.iter().filter(|sample| sample.record.lifted > 0).count(),
-            ],
-            crossings: samples.iter().map(|sample| sample.record.crossings).sum(),
+            lifted: [records().map(|record| record.lifted).sum(), records().filter(|record| record.lifted > 0).count()],
+            crossings: records().map(|record| record.crossings).sum(),
             noise_floor: noise_floor(&dataset, folder)?,
             character: description.character,
             garment: description.garment,
@@ -178,7 +175,7 @@ fn penetration(dataset: &Dataset) -> Result<Penetration> {
         poses: a.poses + b.poses,
         depth: a.depth.max(b.depth),
     };
-    Ok(dataset.samples.par_iter().map(audit).reduce(Penetration::default, add))
+    Ok(dataset.kept().collect::<Vec<_>>().into_par_iter().map(audit).reduce(Penetration::default, add))
 }
 
 impl Spread {

@@ -12,6 +12,9 @@ pub struct Arguments {
     dataset: PathBuf,
     /// The character it was simulated on (glTF)
     character: PathBuf,
+    /// Of its mixed poses
+    #[arg(long)]
+    mixed: bool,
     /// Where to write the picture (PNG)
     #[arg(short, long)]
     output: PathBuf,
@@ -20,7 +23,7 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<()> {
     let dataset = Dataset::read(&arguments.dataset)?;
     let character = gltf::read_character(&arguments.character, dataset.setup.description.rate)?;
-    let picture = render::sheet(&dataset, &character)?;
+    let picture = render::sheet(&dataset, &character, arguments.mixed)?;
     let path = &arguments.output;
     picture.save_with_format(path, image::ImageFormat::Png).with_context(|| path.display().to_string())?;
     println!("{}", path.display());

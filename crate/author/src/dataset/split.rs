@@ -31,6 +31,11 @@ impl Split {
 }
 
 impl Dataset {
+    /// Everything kept, mixed poses last.
+    pub fn kept(&self) -> impl Iterator<Item = &Sample> {
+        self.samples.iter().chain(&self.mixed)
+    }
+
     /// The samples of one split, without mixed poses.
     pub fn split(&self, split: Split) -> Vec<&Sample> {
         let description = &self.setup.description;

@@ -21,14 +21,15 @@ const CAPTION: usize = text::HEIGHT + 10;
 /// Share of the view on either side of the cloth: enough of the body to understand the pose.
 const MARGIN: f64 = 0.14;
 
-/// The sheet of `dataset`; `character` is who it was made with.
-pub fn sheet(dataset: &Dataset, character: &Character) -> Result<RgbImage> {
+/// The sheet of `dataset`, of its mixed poses or of its frames; `character` is who it was made with.
+pub fn sheet(dataset: &Dataset, character: &Character, mixed: bool) -> Result<RgbImage> {
     let description = &dataset.setup.description;
     let names = character.joints.iter().map(|joint| &joint.name);
     if !names.eq(&description.joints) || character.body.positions.len() * 3 != dataset.setup.body.len() {
         return Err(Error::Dataset(format!("wanted the character {}, found another", description.character)));
     }
-    let chosen = choose(dataset, character);
+    let samples = if mixed { &dataset.mixed } else { &dataset.samples };
+    let chosen = choose(samples, &vertices(&dataset.setup.template), character);
     if chosen.is_empty() {
         return Err(Error::Dataset("no pose was kept, there is nothing to show".to_owned()));
     }
@@ -53,7 +54,8 @@ pub fn sheet(dataset: &Dataset, character: &Character) -> Result<RgbImage> {
             let canvas = Canvas::new(VIEW, view.axes(), (low + high) / 2.0, pixels_per_metre);
             canvas.paint(&layers, ground).resolve(&mut sheet, [corner[0] + side * (VIEW[0] + GAP), corner[1]]);
         }
-        let caption = format!("{} {}", description.clips[sample.record.clip], sample.record.frame);
+        let clip = if mixed { "mixed" } else { &description.clips[sample.record.clip] };
+        let caption = format!("{clip} {}", sample.record.frame);
         text::write(&mut sheet, [corner[0], corner[1] + VIEW[1] + 5], pair[0] - GAP, &caption);
     }
     Ok(sheet)
@@ -66,13 +68,12 @@ fn bounds(cloth: &[DVec3], view: &View) -> (DVec3, DVec3) {
     cloth.iter().map(|point| axes * *point).fold(start, |(low, high), point| (low.min(point), high.max(point)))
 }
 
-/// Up to [`POSES`] kept poses, dealt evenly to the clips; of each stretch of a clip the one in which the cloth is furthest from
+/// Up to [`POSES`] of `samples`, dealt evenly to the clips; of each stretch of a clip the one in which the cloth is furthest from
 /// where it hangs in the canonical pose, for there it is most likely to be wrong.
-fn choose<'a>(dataset: &'a Dataset, character: &Character) -> Vec<&'a Sample> {
-    let clips: Vec<&[Sample]> = dataset.samples.chunk_by(|a, b| a.record.clip == b.record.clip).collect();
+fn choose<'a>(samples: &'a [Sample], template: &[DVec3], character: &Character) -> Vec<&'a Sample> {
+    let clips: Vec<&[Sample]> = samples.chunk_by(|a, b| a.record.clip == b.record.clip).collect();
     let frame = body_frame(character, &character.canonical_pose());
-    let hung: Vec<DVec3> =
-        vertices(&dataset.setup.template).iter().map(|point| frame.transform_point3(*point)).collect();
+    let hung: Vec<DVec3> = template.iter().map(|point| frame.transform_point3(*point)).collect();
     let distance = |sample: &Sample| -> f64 {
         vertices(&sample.truth).iter().zip(&hung).map(|(a, b)| a.distance_squared(*b)).sum()
     };
