@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 /// Vertices of the whole skin, about: twice as many triangles.
 const VERTICES: usize = 2600;
 /// Poses looked at, spread over the samples.
-const POSES: usize = 200;
+const POSES: usize = 600;
 /// Cloth further from the skin says nothing about it, metres.
 const REACH: f64 = 0.15;
 /// Rings of vertices around what the cloth came near that are kept: repaired cloth must not meet the border.

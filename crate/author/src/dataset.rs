@@ -79,8 +79,8 @@ pub struct Dataset {
     pub rejected: Vec<Record>,
     /// Accepted mixed poses, to learn from only.
     pub mixed: Vec<Sample>,
-    /// How many mixed poses were left out.
-    pub mixed_rejected: usize,
+    /// The mixed poses that were left out.
+    pub mixed_rejected: Vec<Record>,
 }
 
 /// Path of the setup file of dataset `folder`.
@@ -164,7 +164,10 @@ impl Setup {
 
     fn from_file(file: &Tensors) -> Result<Self> {
         let description: Description = json(file, "setup")?;
-        let joints = description.joints.len();
+        let (joints, parents) = (description.joints.len(), description.parents.len());
+        if ![0, joints].contains(&parents) {
+            return Err(Error::Dataset(format!("wanted a parent for each of {joints} joints, found {parents}")));
+        }
         let positions = |name: &str, count| file.f32(name, &[count, Some(3)]);
         let (template, shape) = positions("cloth.rest", None)?;
         let (body, body_shape) = positions("body.rest", None)?;
@@ -242,26 +245,28 @@ impl Setup {
 }
 
 impl Dataset {
+    /// A dataset of frames that were all kept.
+    pub fn new(setup: Setup, samples: Vec<Sample>) -> Self {
+        Self { setup, samples, rejected: Vec::new(), mixed: Vec::new(), mixed_rejected: Vec::new() }
+    }
+
     /// Reads a whole dataset.
     pub fn read(folder: &Path) -> Result<Self> {
         let setup = Setup::existing(folder)?;
         let sizes = (setup.description.joints.len(), setup.template.len() / 3);
-        let (mut samples, mut rejected) = (Vec::new(), Vec::new());
-        for path in paths(&folder.join("poses"))? {
-            let sample = Sample::read(&path, sizes.0, sizes.1)?;
-            if sample.record.rejected.is_none() { samples.push(sample) } else { rejected.push(sample.record) }
-        }
-        let mut mixed = Vec::new();
-        if folder.join("mixed").exists() {
-            let read = |path: &PathBuf| Sample::read(path, sizes.0, sizes.1);
-            mixed = paths(&folder.join("mixed"))?.iter().map(read).collect::<Result<_>>()?;
-        }
-        let tried = mixed.len();
-        mixed.retain(|sample| sample.record.rejected.is_none());
+        let read = |part: &str| -> Result<(Vec<Sample>, Vec<Record>)> {
+            let (mut samples, mut rejected) = (Vec::new(), Vec::new());
+            for path in paths(&folder.join(part))? {
+                let sample = Sample::read(&path, sizes.0, sizes.1)?;
+                if sample.record.rejected.is_none() { samples.push(sample) } else { rejected.push(sample.record) }
+            }
+            Ok((samples, rejected))
+        };
+        let ((samples, rejected), (mixed, mixed_rejected)) = (read("poses")?, read("mixed")?);
         let clips = setup.description.clips.len();
         if let Some(record) = samples.iter().map(|sample| &sample.record).chain(&rejected).find(|r| r.clip >= clips) {
             return Err(Error::Dataset(format!("a pose names clip {}, there are {clips}", record.clip)));
         }
-        Ok(Self { rejected, setup, samples, mixed_rejected: tried - mixed.len(), mixed })
+        Ok(Self { rejected, setup, samples, mixed_rejected, mixed })
     }
 }

@@ -9,9 +9,9 @@ mod tests;
 mod timing;
 
 use crate::dataset::{Record, Sample, Setup, Split, mixed_path, pose_path, twin_path};
-use crate::motion::mixed;
+use crate::motion::{has_limbs, mixed};
 use crate::rig::{Character, Pose, joints, numbers, vertices};
-use crate::simulate::Simulator;
+use crate::simulate::{Simulator, is_sound};
 use crate::{Error, Result};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -61,6 +61,13 @@ impl<'a> Run<'a> {
             let reason = format!("{name} has no clip, wanted at least one: there is no pose to simulate");
             return Err(Error::Simulation(reason));
         }
+        if request.mixed > 0 && !(has_limbs(request.character) && !learned(request.character).is_empty()) {
+            let name = request.names[0];
+            let reason = format!(
+                "{name} has nothing to mix: wanted limbs, two chains of joints at least, and frames to learn from"
+            );
+            return Err(Error::Simulation(reason));
+        }
         let settings = request.settings.clone();
         let simulator = Simulator::new(request.character, request.garment, request.material.1, settings)?;
         let mut wanted = request.setup();
@@ -94,10 +101,10 @@ impl<'a> Run<'a> {
         let learned = learned(character);
         let run = |task: &Task| -> Result<()> {
             let start = Stopwatch::start();
-            let frame = |task: &Task| &character.clips[task.clip].poses[task.frame];
+            let frame = || &character.clips[task.clip].poses[task.frame];
             let pose = match task.kind {
-                Kind::Frame => frame(task).clone(),
-                Kind::Twin => noise::turned(character, frame(task), task.clip, task.frame),
+                Kind::Frame => frame().clone(),
+                Kind::Twin => noise::turned(character, frame(), task.clip, task.frame),
                 Kind::Mixed => mixed(character, &learned, task.frame),
             };
             let outcome = self.simulator.simulate(&self.template, &pose);
@@ -118,7 +125,8 @@ fn learned(character: &Character) -> Vec<&Pose> {
     let train =
         |clip: usize, frame: usize| Split::of(clips.len(), clip, frame, clips[clip].poses.len()) == Split::Train;
     let frames = |clip: usize| clips[clip].poses.iter().enumerate().filter(move |(frame, _)| train(clip, *frame));
-    (0..clips.len()).flat_map(frames).map(|(_, pose)| pose).collect()
+    let frames = (0..clips.len()).flat_map(frames).map(|(_, pose)| pose);
+    frames.filter(|pose| is_sound(character, pose)).collect()
 }
 
 /// The poses and twins of the request's shard, in [`order`], then its mixed poses.

@@ -72,13 +72,15 @@ pub struct Report {
     pub kept: usize,
     /// Frames not simulated yet.
     pub missing: usize,
-    /// Mixed poses kept and left out.
-    pub mixed: [usize; 2],
+    /// Mixed poses kept; the figures below are of these and the frames together.
+    pub mixed: usize,
+    /// Mixed poses left out, by reason.
+    pub mixed_reasons: BTreeMap<String, usize>,
     /// Frames left out, by reason.
     pub reasons: BTreeMap<String, usize>,
     /// Every frame left out.
     pub left_out: Vec<LeftOut>,
-    /// Seconds of processor time per pose, of all simulated, twins too.
+    /// Seconds of processor time per pose, of all simulated, twins and mixed poses too.
     pub seconds: Spread,
     /// RMS residual force of the kept poses, in mean vertex weights.
     pub residual: Spread,
@@ -108,17 +110,13 @@ impl Report {
         let description = setup.description.clone();
         let (kept, rejected) = (dataset.samples.len(), dataset.rejected.len());
         let frames = description.frames.iter().sum::<usize>().max(kept + rejected);
-        let records = || dataset.kept().map(|sample| &sample.record);
+        let records = || dataset.all().map(|sample| &sample.record);
         let over = |figure: fn(&Record) -> f64| Spread::of(records().map(figure).collect());
         let left_out = |record: &Record| LeftOut {
             clip: description.clips[record.clip].clone(),
             frame: record.frame,
             reason: record.rejected.clone().unwrap_or_default(),
         };
-        let mut reasons = BTreeMap::new();
-        for reason in dataset.rejected.iter().filter_map(|record| record.rejected.as_deref()) {
-            *reasons.entry(kind(reason)).or_default() += 1;
-        }
         let least = records().map(|record| record.distance).fold(f64::INFINITY, f64::min);
         Ok(Self {
             vertices: setup.template.len() / 3,
@@ -129,8 +127,9 @@ impl Report {
             frames,
             kept,
             missing: frames - kept - rejected,
-            mixed: [dataset.mixed.len(), dataset.mixed_rejected],
-            reasons,
+            mixed: dataset.mixed.len(),
+            mixed_reasons: reasons(&dataset.mixed_rejected),
+            reasons: reasons(&dataset.rejected),
             left_out: dataset.rejected.iter().map(left_out).collect(),
             seconds: Spread::of(seconds(folder)?),
             residual: over(|record| record.residual),
@@ -156,6 +155,15 @@ impl Report {
     }
 }
 
+/// Poses left out, by reason.
+fn reasons(rejected: &[Record]) -> BTreeMap<String, usize> {
+    let mut reasons = BTreeMap::new();
+    for reason in rejected.iter().filter_map(|record| record.rejected.as_deref()) {
+        *reasons.entry(kind(reason)).or_default() += 1;
+    }
+    reasons
+}
+
 /// A reason without what was found in the one pose: poses with the same are counted together.
 fn kind(reason: &str) -> String {
     reason.split(", found").next().unwrap_or(reason).to_owned()
@@ -175,7 +183,7 @@ fn penetration(dataset: &Dataset) -> Result<Penetration> {
         poses: a.poses + b.poses,
         depth: a.depth.max(b.depth),
     };
-    Ok(dataset.kept().collect::<Vec<_>>().into_par_iter().map(audit).reduce(Penetration::default, add))
+    Ok(dataset.all().collect::<Vec<_>>().into_par_iter().map(audit).reduce(Penetration::default, add))
 }
 
 impl Spread {
@@ -197,10 +205,12 @@ impl std::fmt::Display for Report {
         for (reason, count) in &self.reasons {
             writeln!(f, "               {count} left out: {reason}")?;
         }
-        if let [kept, left_out] = self.mixed
-            && kept + left_out > 0
-        {
-            writeln!(f, "  mixed poses  {kept} kept, {left_out} left out")?;
+        let mixed_left_out: usize = self.mixed_reasons.values().sum();
+        if self.mixed + mixed_left_out > 0 {
+            writeln!(f, "  mixed poses  {} kept, {mixed_left_out} left out", self.mixed)?;
+        }
+        for (reason, count) in &self.mixed_reasons {
+            writeln!(f, "               {count} left out: {reason}")?;
         }
         writeln!(f, "{:<15}{:>10}{:>10}{:>10}", "", "median", "95 %", "greatest")?;
         let rows = [

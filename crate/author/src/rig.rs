@@ -144,6 +144,14 @@ pub fn is_obstacle(name: &str) -> bool {
     name.to_lowercase().contains("obstacle")
 }
 
+/// Whether each joint begins a limb: a chain of joints beside another one, hanging from the same joint. What has nothing below it, a twist
+/// helper or an ear, is no chain. Only joints that `counts` names are looked at; parents stand before their children.
+pub fn limbs(parents: &[Option<usize>], counts: impl Fn(usize) -> bool) -> Vec<bool> {
+    let goes_on = |joint: usize| counts(joint) && parents.contains(&Some(joint));
+    let chains = |of: usize| (0..parents.len()).filter(|joint| parents[*joint] == Some(of) && goes_on(*joint)).count();
+    (0..parents.len()).map(|joint| goes_on(joint) && parents[joint].is_some_and(|parent| chains(parent) > 1)).collect()
+}
+
 /// The joint that moves a vertex most, the first of equals; 0 for a vertex without weights.
 pub fn strongest(weights: &SkinWeights) -> usize {
     let stronger = |best: (usize, f64), &next: &(usize, f64)| if next.1 > best.1 { next } else { best };

@@ -281,6 +281,7 @@ fn shards_copied_together_equal_a_single_run() {
     assert_eq!((report["kept"].as_u64(), report["missing"].as_u64()), (Some(3), Some(0)), "{report}");
     assert_eq!(report["penetration"]["vertices"].as_u64(), Some(0), "{report}");
     assert!(folder.accepts("inspect first").contains("3 kept"));
+    folder.refuses(&format!("{simulate} first --mixed 2"), &["character.glb", "nothing to mix", "limbs"]);
     folder.refuses(&format!("{simulate} first --rate 5"), &["first", "other motion", "5 poses a second"]);
 }
 

@@ -83,10 +83,13 @@ pub fn mixed_path(folder: &Path, number: usize) -> PathBuf {
     folder.join("mixed").join(format!("{number:05}.safetensors"))
 }
 
-/// The files of poses in `folder`, in the order of clip and frame.
+/// The files of poses in `folder`, in the order of clip and frame; none where there is no such folder.
 pub fn paths(folder: &Path) -> Result<Vec<PathBuf>> {
     let io = |source| Error::Io { path: folder.to_owned(), source };
     let mut paths = Vec::new();
+    if !folder.exists() {
+        return Ok(paths);
+    }
     for entry in std::fs::read_dir(folder).map_err(io)? {
         paths.push(entry.map_err(io)?.path());
     }

@@ -7,7 +7,7 @@ use super::{Dataset, Sample};
 pub enum Split {
     /// What is learned from.
     Train,
-    /// By what training is steered: a tenth of the rest, every tenth clip; with fewer than ten clips, the last tenth of each in time.
+    /// By what training is steered: every tenth of the other clips; with fewer than ten clips, the tenth of each before the last.
     Validation,
     /// The last tenth of the clips, unseen during training; with fewer than ten clips, the last tenth of each in time.
     Test,
@@ -31,8 +31,8 @@ impl Split {
 }
 
 impl Dataset {
-    /// Everything kept, mixed poses last.
-    pub fn kept(&self) -> impl Iterator<Item = &Sample> {
+    /// All that was kept, mixed poses last.
+    pub fn all(&self) -> impl Iterator<Item = &Sample> {
         self.samples.iter().chain(&self.mixed)
     }
 

@@ -9,7 +9,7 @@ const POSES: usize = 30;
 
 fn dataset() -> Dataset {
     let (setup, samples) = synthetic::dataset(200, 3, POSES);
-    Dataset { setup, samples, rejected: Vec::new(), mixed: Vec::new(), mixed_rejected: 0 }
+    Dataset::new(setup, samples)
 }
 
 fn model(dataset: &Dataset) -> HostModel {
@@ -107,7 +107,7 @@ fn what_cannot_be_judged_is_named() {
     few.samples.clear();
     refused(&model, &few, Split::Train, &["poses to learn from", "found none"]);
     let (setup, samples) = synthetic::dataset(100, 3, POSES);
-    let other = Dataset { setup, samples, rejected: Vec::new(), mixed: Vec::new(), mixed_rejected: 0 };
+    let other = Dataset::new(setup, samples);
     let (n, found) = (model.sizes.vertices.to_string(), other.setup.template.len() / 3);
     refused(&model, &other, Split::Test, &["not the model's", &n, &format!("found {found} vertices")]);
     let mut turned = dataset.clone();

@@ -55,8 +55,7 @@ pub(super) fn turned(character: &Character, pose: &Pose, clip: usize, frame: usi
 
 /// Compares the twins of dataset `folder` with their poses; `None` when there is no pair.
 pub fn noise_floor(dataset: &Dataset, folder: &Path) -> Result<Option<NoiseFloor>> {
-    let twins = folder.join("twins");
-    let twins = if twins.exists() { paths(&twins)? } else { Vec::new() };
+    let twins = paths(&folder.join("twins"))?;
     let setup = &dataset.setup;
     let weights = setup.nearest()?.into_iter().map(|nearest| setup.body_weights[nearest].clone());
     let mut dressed = setup.character()?;

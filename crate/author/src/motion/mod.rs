@@ -10,7 +10,7 @@ pub mod swimmer;
 
 use crate::rig::{Character, Clip, Pose};
 use crate::{Error, Result};
-pub use mixed::mixed;
+pub use mixed::{has_limbs, mixed};
 
 /// Poses per second of the project's own characters.
 pub const RATE: f64 = 30.0;

@@ -31,7 +31,8 @@ pub fn sheet(dataset: &Dataset, character: &Character, mixed: bool) -> Result<Rg
     let samples = if mixed { &dataset.mixed } else { &dataset.samples };
     let chosen = choose(samples, &vertices(&dataset.setup.template), character);
     if chosen.is_empty() {
-        return Err(Error::Dataset("no pose was kept, there is nothing to show".to_owned()));
+        let what = if mixed { "mixed pose" } else { "pose" };
+        return Err(Error::Dataset(format!("no {what} was kept, there is nothing to show")));
     }
     let triangles = dataset.setup.triangles.as_chunks::<3>().0;
     let cloths: Vec<Vec<DVec3>> = chosen.iter().map(|sample| vertices(&sample.truth)).collect();

@@ -31,6 +31,7 @@ pub use distance::BodyDistance;
 pub use hull::hull;
 pub use material::{GRAVITY, Material};
 pub use outcome::{Outcome, Status};
+pub(crate) use path::is_sound;
 pub use path::{between, body_frame, path, to_body_frame};
 pub use settings::Settings;
 pub use simulator::Simulator;

@@ -72,7 +72,7 @@ pub(super) fn motion(a: &Pose, b: &Pose) -> Vec<DAffine3> {
 }
 
 /// Whether every transform is finite and invertible, and there is one per joint.
-pub(super) fn is_sound(character: &Character, pose: &Pose) -> bool {
+pub(crate) fn is_sound(character: &Character, pose: &Pose) -> bool {
     let sound = |joint: &DAffine3| {
         let finite = joint.is_finite() && joint.translation.abs().max_element() < 1e6;
         finite && joint.matrix3.determinant().abs() > 1e-12 && joint.matrix3.col(0) != DVec3::ZERO

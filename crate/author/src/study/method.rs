@@ -87,7 +87,7 @@ impl Table {
 fn front(whole: Architecture) -> Vec<Entry> {
     let depths = [(1, 32), (1, 64), (2, 32), (2, 64), (2, 128), (3, 64)];
     let depths = depths.map(|(layers, features)| Architecture { layers, features, ..whole });
-    let bases = [(5, 64), (16, 32), (32, 32), (32, 128), (64, 64), (100, 256)];
+    let bases = [(5, 64), (16, 32), (32, 32), (32, 64), (32, 128), (100, 256)];
     let bases = bases.map(|(embedding, basis)| Architecture { embedding, basis, ..whole });
     depths.into_iter().chain(bases).map(|architecture| sized(architecture, "")).collect()
 }

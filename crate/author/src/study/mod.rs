@@ -10,7 +10,7 @@ mod table;
 #[cfg(test)]
 mod tests;
 
-use crate::dataset::{Dataset, Sample, Split, fingerprint, write};
+use crate::dataset::{Dataset, Sample, Split, digest, fingerprint, write};
 use crate::evaluate::{Errors, Judge, predictions, unseen};
 use crate::train::{End, Files, Row, Settings, Slices, Trainer, Variant, slices};
 use crate::{Error, Result};
@@ -90,7 +90,7 @@ impl<'a> Study<'a> {
     /// The outcome of `entry`: read where there is one, else made. `progress(row)` after every epoch.
     pub fn outcome(&self, entry: &Entry, progress: impl FnMut(&Row)) -> Result<Outcome> {
         let path = self.folder.join(format!("{}.json", entry.name));
-        let made_of = self.made_of(entry);
+        let made_of = self.made_of(entry)?;
         if path.exists() {
             let wrong = |reason: String| Error::File { path: path.clone(), reason };
             let bytes = crate::dataset::read(&path)?;
@@ -124,11 +124,15 @@ impl<'a> Study<'a> {
         Ok(outcome)
     }
 
-    fn made_of(&self, entry: &Entry) -> String {
+    fn made_of(&self, entry: &Entry) -> Result<String> {
+        // Tells what an older version made of the same method.
+        let start = entry.method.initial(&self.dataset.setup, &self.slices.train, self.settings.seed)?;
+        let start = digest(&start.to_bytes(Storage::F32));
         let settings = Settings { variant: entry.method.variant(), ..self.settings };
         let parts = [&self.slices.train, &self.slices.validation, &self.unseen];
         let data = parts.map(|samples| fingerprint(&self.dataset.setup, samples));
-        format!("{:?}, {settings:?}, {}, poses {:?}, data {data:016x?}", entry.method, self.title(), self.poses())
+        let (method, title, poses) = (&entry.method, self.title(), self.poses());
+        Ok(format!("{method:?}, {settings:?}, {title}, poses {poses:?}, start {start:016x}, data {data:016x?}"))
     }
 
     /// Bytes of the file; of a form that makes its basis from fewer numbers, of those.

@@ -1,16 +1,18 @@
 //! Φ in parts: one for every limb, which hears that limb and the trunk, and one that hears all joints. Each is a small MLP of its own;
 //! together they are the MLP of network.md §2, whose weights between parts are zero and stay so. What arms and legs do together in the
-//! clips would otherwise be taken for a law. Validation errors of the skeleton stream alone, m = 32, 30 epochs, for one MLP of 128 and 64
-//! hidden units (means of three seeds) and for the parts (two seeds): robe 18.2; 16.8, 16.6 mm; cape 15.6; 15.7, 14.7; T-shirt 8.1; 8.0, 7.4.
-//! With m = 64 the cape's are 14.3, 15.0 mm, the others' about the same.
-//! Tried, in shorter trainings: as many parts that all hear all (robe 17.4, 17.1 mm, where these gave 16.8, 16.9), limbs that carry the same
-//! cloth heard together (nearly all end up together), pairs of limbs (no better, three times as many), 128 and 64 hidden units a part
-//! (16.0, 16.3 mm, but three times as large).
+//! clips would otherwise be taken for a law.
 
 use super::initial::linear;
+use crate::rig::limbs;
 use ctsn_core::model::Linear;
 
-/// Hidden layers of each part.
+/// Hidden layers of Φ where there are no limbs.
+const ALONE: [usize; 2] = [128, 64];
+/// Hidden layers of each of several parts. Validation errors of the skeleton stream alone, m = 32, 30 epochs, for one MLP (means of three
+/// seeds) and for parts (two seeds): robe 18.2; 16.8, 16.6 mm; cape 15.6; 15.7, 14.7; T-shirt 8.1; 8.0, 7.4. With m = 64: robe 16.1, 17.8,
+/// cape 14.3, 15.0, T-shirt 7.9, 7.8. Tried, in shorter trainings: as many parts that all hear all (robe 17.4, 17.1, where these gave 16.8,
+/// 16.9), limbs that carry the same cloth heard together (nearly all end up together), pairs of limbs (no better, three times as many),
+/// 128 and 64 hidden units a part (16.0, 16.3, but three times as large).
 const HIDDEN: [usize; 2] = [64, 32];
 /// Most limbs with a part of their own, those that carry most cloth: the layers of Φ grow with its square.
 const LIMBS: usize = 8;
@@ -27,24 +29,23 @@ pub fn parts(parents: &[Option<usize>], carried: &[f64], heard: &[bool]) -> Vec<
             hears[parent] |= hears[joint];
         }
     }
-    let branches = |of: usize| (0..parents.len()).filter(|j| parents[*j] == Some(of) && hears[*j]).count();
-    let root = |joint: usize| hears[joint] && parents[joint].is_some_and(|parent| branches(parent) > 1);
+    let root = limbs(parents, |joint| hears[joint]);
     // The limb each joint belongs to, the innermost where limbs hang from limbs; those are trunk.
     let mut limb: Vec<Option<usize>> = vec![None; joints];
     let mut trunk = vec![false; joints];
     for (joint, parent) in parents.iter().enumerate() {
         let above = parent.and_then(|parent| limb[parent]);
-        limb[joint] = if root(joint) { Some(joint) } else { above };
-        if root(joint) {
+        limb[joint] = if root[joint] { Some(joint) } else { above };
+        if root[joint] {
             above.into_iter().for_each(|above| trunk[above] = true);
         }
     }
-    let mut limbs: Vec<usize> = (0..parents.len()).filter(|joint| root(*joint) && !trunk[*joint]).collect();
-    limbs.sort_by(|a, b| below[*b].total_cmp(&below[*a]));
-    let of = |joint: usize| limb[joint].filter(|limb| limbs.contains(limb));
+    let mut ends: Vec<usize> = (0..parents.len()).filter(|joint| root[*joint] && !trunk[*joint]).collect();
+    ends.sort_by(|a, b| below[*b].total_cmp(&below[*a]));
+    let of = |joint: usize| limb[joint].filter(|limb| ends.contains(limb));
     let hears =
         |part: usize| (0..joints).map(|joint| heard[joint] && of(joint).is_none_or(|limb| limb == part)).collect();
-    let mut parts: Vec<Vec<bool>> = limbs.iter().take(LIMBS).map(|limb| hears(*limb)).collect();
+    let mut parts: Vec<Vec<bool>> = ends.iter().take(LIMBS).map(|limb| hears(*limb)).collect();
     parts.push(heard.to_vec());
     parts
 }
@@ -53,7 +54,8 @@ pub fn parts(parents: &[Option<usize>], carried: &[f64], heard: &[bool]) -> Vec<
 pub fn embedding(parts: &[Vec<bool>], m: usize, rng: &mut fastrand::Rng) -> Vec<Linear<Vec<f32>>> {
     let parts = if m < 2 * parts.len() { &parts[parts.len() - 1..] } else { parts };
     let count = parts.len();
-    let widths = |part: usize| [HIDDEN[0], HIDDEN[1], m * (part + 1) / count - m * part / count];
+    let [first, second] = if count == 1 { ALONE } else { HIDDEN };
+    let widths = |part: usize| [first, second, m * (part + 1) / count - m * part / count];
     let inputs = 12 * parts[0].len();
     let mut layers: Vec<Linear<Vec<f32>>> = Vec::new();
     for depth in 0..3 {
@@ -134,6 +136,6 @@ mod tests {
             }
         }
         let few = embedding(&parts, 9, &mut fastrand::Rng::with_seed(1));
-        assert_eq!(few.iter().map(|layer| layer.outputs).collect::<Vec<_>>(), [64, 32, 9]);
+        assert_eq!(few.iter().map(|layer| layer.outputs).collect::<Vec<_>>(), [128, 64, 9]);
     }
 }

@@ -1,4 +1,4 @@
-//! The validation slice: a tenth of the training split, by which training is steered. The unseen clips never are.
+//! What a training needs of a dataset: poses to learn from, and poses to steer it by. Unseen clips do neither.
 
 use crate::dataset::{Dataset, Sample, Split};
 use crate::{Error, Result};
@@ -6,7 +6,7 @@ use crate::{Error, Result};
 /// Fewest poses that are worth training on.
 const POSES: usize = 50;
 
-/// The training split in two.
+/// The poses of a training.
 #[derive(Clone, Debug)]
 pub struct Slices<'a> {
     /// What is learned from, mixed poses last.
@@ -15,7 +15,7 @@ pub struct Slices<'a> {
     pub validation: Vec<&'a Sample>,
 }
 
-/// Parts the training split of `dataset`, and checks that there is enough of everything.
+/// The poses of `dataset` to train with; checks that there is enough of everything.
 pub fn slices(dataset: &Dataset) -> Result<Slices<'_>> {
     let (poses, clips) = (dataset.samples.len(), dataset.setup.description.clips.len());
     if poses < POSES {

@@ -1,6 +1,7 @@
 //! Training from beginning to end: the same seed and an interruption give the same bytes; the best epoch is kept; reasons to stop.
 
 use super::*;
+use crate::dataset::Split;
 use crate::synthetic;
 use ctsn_core::model::Storage;
 use tempfile::TempDir;
@@ -144,9 +145,9 @@ fn an_ablation_learns_what_is_left() {
 
 #[test]
 fn parts_of_the_embedding_stay_deaf_to_each_other() {
-    let (mut setup, samples) = synthetic::dataset(60, 4, 8);
-    // A trunk of two joints with two limbs of one.
-    setup.description.parents = vec![None, Some(0), Some(1), Some(1)];
+    let (mut setup, samples) = synthetic::dataset(60, 6, 8);
+    // A trunk of two joints with two limbs of two.
+    setup.description.parents = vec![None, Some(0), Some(1), Some(2), Some(1), Some(4)];
     let samples: Vec<&Sample> = samples.iter().collect();
     let architecture = Architecture { embedding: 8, basis: 16, layers: 2, heads: 2, features: 8 };
     let model = initial(&setup, &samples, architecture, 1).unwrap();
@@ -169,7 +170,7 @@ fn dataset(clips: usize, frames: usize) -> Dataset {
         sample
     };
     let samples = samples.into_iter().enumerate().map(place).collect();
-    Dataset { setup, samples, rejected: Vec::new(), mixed: Vec::new(), mixed_rejected: 0 }
+    Dataset::new(setup, samples)
 }
 
 #[test]
@@ -185,6 +186,17 @@ fn validation_is_a_tenth_of_the_training_clips() {
     let Slices { train, validation } = slices(&few).unwrap();
     assert_eq!((train.len(), validation.len()), (82, 8));
     assert!(validation.iter().all(|sample| (41..45).contains(&sample.record.frame)));
+    let mut mixed = dataset(2, 50);
+    mixed.mixed = mixed.samples[..3].to_vec();
+    let Slices { train, validation } = slices(&mixed).unwrap();
+    assert_eq!(
+        (train.len(), validation.len(), mixed.split(Split::Test).len()),
+        (85, 8, 10),
+        "mixed poses are learned from"
+    );
+    // By the length of a clip, not by what was kept of it.
+    mixed.setup.description.frames = vec![100; 2];
+    assert_eq!([Split::Train, Split::Validation, Split::Test].map(|split| mixed.split(split).len()), [100, 0, 0]);
 }
 
 #[test]
