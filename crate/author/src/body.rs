@@ -14,7 +14,8 @@ use std::collections::BTreeMap;
 
 /// Vertices of the whole skin, about: twice as many triangles.
 const VERTICES: usize = 2600;
-/// Poses looked at, spread over the samples.
+/// Poses looked at, spread over the samples. With 200 of 2,093 a robe's deepest unseen vertex stayed 20.6 mm inside, with 600 and with all
+/// of them 8.7 mm.
 const POSES: usize = 600;
 /// Cloth further from the skin says nothing about it, metres.
 const REACH: f64 = 0.15;

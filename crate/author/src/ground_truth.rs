@@ -61,8 +61,8 @@ impl<'a> Run<'a> {
             let reason = format!("{name} has no clip, wanted at least one: there is no pose to simulate");
             return Err(Error::Simulation(reason));
         }
-        let mixable = has_limbs(request.character) && !learned(request.character).is_empty();
-        if request.mixed > 0 && !mixable {
+        let mixable = || has_limbs(request.character) && !learned(request.character).is_empty();
+        if request.mixed > 0 && !mixable() {
             let name = request.names[0];
             let reason = format!(
                 "{name} has nothing to mix: wanted limbs, two chains of joints at least, and frames to learn from"

@@ -11,9 +11,9 @@ use std::time::Duration;
 
 /// Train the network on a dataset: all clips but the last tenth (with fewer than ten: the first 90 % of each)
 ///
-/// Mixed poses of the dataset are learned from, too. A tenth of the frames are not learned from, but predicted after every epoch: the model with the least error on them is kept. The learning
-/// curve stands beside the model (MODEL.curve.csv). A checkpoint is written every few epochs; training interrupted goes on from it, to
-/// the same result. A model that this very training has made is left as it is.
+/// Mixed poses of the dataset are learned from, too. A tenth of the frames are not learned from, but predicted after every epoch: the model
+/// with the least error on them is kept. The learning curve stands beside the model (MODEL.curve.csv). A checkpoint is written every few
+/// epochs; training interrupted goes on from it, to the same result. A model that this very training has made is left as it is.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// Dataset folder, as `ctsn simulate` leaves it
