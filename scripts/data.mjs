@@ -2,7 +2,7 @@
 //   npm run data                           all ten pairs, 80 poses each
 //   npm run data -- andy-tshirt fox-cape   only these
 //   npm run data -- --full                 three of them at full size: 1,300 poses each, and mixed ones to learn from
-//   npm run data -- --on figure.glb --kind tshirt   a character of your own, with its own clips
+//   npm run data -- --on figure.glb --kind tshirt --mixed 300   a character of your own, with its own clips
 // Everything already there is kept: a run that was cut off goes on where it stopped.
 import { existsSync, mkdirSync } from 'node:fs';
 import { basename } from 'node:path';
@@ -48,14 +48,14 @@ async function simulate(character, kind, poses, mixed, pinched, name) {
 await main(async () => {
   const { values, positionals } = parseArgs({
     allowPositionals: true,
-    options: { full: { type: 'boolean' }, on: { type: 'string' }, kind: { type: 'string' } },
+    options: { full: { type: 'boolean' }, on: { type: 'string' }, kind: { type: 'string' }, mixed: { type: 'string' } },
   });
   await need('cargo', ['build', '--release', '--locked', '-p', 'ctsn-author']);
   mkdirSync(at('out/pairs'), { recursive: true });
   const poses = values.full ? POSES.full : POSES.small;
   if (values.on) {
     const kind = values.kind ?? 'tshirt';
-    return simulate(values.on, kind, poses, 0, PINCHED.others, `${basename(values.on, '.glb')}-${kind}`);
+    return simulate(values.on, kind, poses, values.mixed ?? 0, PINCHED.others, `${basename(values.on, '.glb')}-${kind}`);
   }
   const all = Object.keys(PAIRS).filter((name) => !values.full || 'mixed' in PAIRS[name]);
   for (const name of positionals.length > 0 ? positionals : all) {

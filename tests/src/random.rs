@@ -127,6 +127,7 @@ pub fn model(rng: &mut Rng, shape: Shape) -> HostModel {
         layers: (0..layers).map(|l| layer(rng, if l == 0 { 3 } else { features })).collect(),
         vertex: vec![linear(rng, features, 11), linear(rng, 11, basis)],
         mesh: numbers(rng, n * 3 * basis, 0.1),
+        mesh_stream: true,
         surface: Some(Surface { uv: vec![0.0; 2 * drawn.len()], vertex: drawn, triangles: Vec::new() }),
         body: None,
         training: None,

@@ -2,7 +2,7 @@
 #![cfg(not(target_arch = "wasm32"))]
 
 use ctsn_core::cpu::{Level, normals::normals};
-use ctsn_core::model::HostModel;
+use ctsn_core::model::{HostModel, Storage};
 use ctsn_core::{Predictor, Streams};
 use ctsn_gpu::Gpu;
 use ctsn_tests::golden;
@@ -93,6 +93,33 @@ fn parity_with_the_cpu_at_awkward_sizes() {
 }
 
 /// Largest difference; a NaN wins.
+#[test]
+fn a_mesh_stream_that_adds_nothing_is_not_computed() {
+    let (mut rng, gpu) = (fastrand::Rng::with_seed(5), gpu());
+    let shape = Shape { vertices: 99, joints: 4, embedding: 3, basis: 1, heads: 1, per_head: 4, layers: 1 };
+    let mut model = random::model(&mut rng, shape);
+    model.mesh.fill(0.0);
+    let left_out = HostModel::parse(&model.to_bytes(Storage::F32)).expect("a model");
+    let computed = HostModel { mesh_stream: true, ..left_out.clone() };
+    let dispatches = |model: &HostModel, streams| {
+        let model = block_on(ctsn_gpu::Model::new(&gpu, model)).expect("a model");
+        model.stages(streams).iter().map(|stage| stage.dispatches).sum::<usize>()
+    };
+    assert_eq!(dispatches(&left_out, Streams::Both), dispatches(&computed, Streams::Skeleton));
+    let pose = random::pose(&mut rng, shape.joints);
+    let predict = |model: &HostModel| {
+        let mut predictor = Predictor::from_model(model.clone(), Level::new());
+        predictor.predict_row_major(&pose, Streams::Both).expect("a pose");
+        predictor.positions().to_vec()
+    };
+    let mut on_gpu = predictor(&gpu, &left_out);
+    on_gpu.predict_row_major(&pose, Streams::Both).expect("a pose");
+    let found = block_on(on_gpu.read()).expect("a prediction").positions;
+    assert_eq!(predict(&left_out), predict(&computed));
+    assert!(largest(&found, &predict(&computed)) <= TOLERANCE);
+    assert!(block_on(on_gpu.stages()).expect("its stages").iter().all(|(name, _)| name != "mesh"));
+}
+
 fn largest(a: &[f32], b: &[f32]) -> f32 {
     assert_eq!(a.len(), b.len());
     let wider = |largest: f32, d: f32| if d > largest || d.is_nan() { d } else { largest };

@@ -32,7 +32,7 @@ pub(crate) struct Inner {
     pub normals: usize,
     /// Positions and normals of what is drawn: the cloth's own where the model has no surface.
     pub drawn: [usize; 2],
-    /// Rooms of the stages' results, by name.
+    /// Rooms of the stages' results, by name: of those that a frame computes.
     pub results: Vec<(String, usize)>,
 }
 
@@ -84,7 +84,7 @@ fn record(gpu: &Gpu, model: &HostModel) -> Result<Model> {
     let (joints, confidence) = (room(a.joints), room(a.confidence));
     let (positions, normals) = (room(a.positions), room(a.normals));
     let drawn = a.drawn.as_ref().map_or([positions, normals], |drawn| [room(drawn.positions), room(drawn.normals)]);
-    let results = a.stages().into_iter().map(|(name, id)| (name, room(*id))).collect();
+    let results = a.stages().into_iter().filter_map(|(name, id)| Some((name, recorder.room(*id)?))).collect();
     let Recorder { constants, rooms, .. } = recorder;
     let (gpu, sizes, rig, trust) = (gpu.clone(), model.sizes, model.rig.clone(), Confidence::new(model));
     Ok(Model(Arc::new(Inner {

@@ -117,10 +117,12 @@ impl Settings {
     /// A trainer that has not begun.
     fn trainer(&self, setup: &Setup, slices: &Slices) -> Result<Trainer> {
         let Self { epochs, time_budget: budget, patience, batch, learning_rate: rate, seed, .. } = *self;
-        let (architecture, variant) = (self.network.architecture(), Variant::without(&self.without));
+        let variant = Variant::without(&self.without);
+        let architecture = variant.sizes(self.network.architecture());
         let model = train::initial(setup, &slices.train, architecture, seed)?;
+        let mixed = if slices.mixed == 0 { String::new() } else { format!(" ({} of them mixed)", slices.mixed) };
         println!(
-            "{} poses to learn from, {} to validate, {} vertices, {architecture:?}",
+            "{} poses to learn from{mixed}, {} to validate, {} vertices, {architecture:?}",
             slices.train.len(),
             slices.validation.len(),
             model.sizes.vertices
@@ -152,6 +154,7 @@ impl Settings {
             "garment": setup.description.garment,
             "clips": setup.description.clips,
             "poses": slices.train.len(),
+            "mixed": slices.mixed,
             "without": self.without.iter().map(part).collect::<Vec<_>>(),
             "epoch": best.epoch,
             "batch": self.batch,

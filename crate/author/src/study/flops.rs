@@ -136,5 +136,7 @@ mod tests {
         assert!(none < skeleton && skeleton < both);
         let n = model.sizes.vertices;
         assert_eq!(none, 24 * n * model.reference.skin.width + 36 * n);
+        let silent = HostModel { mesh_stream: false, ..model };
+        assert_eq!(flops(&silent, Streams::Both), skeleton);
     }
 }

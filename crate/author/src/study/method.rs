@@ -121,32 +121,21 @@ impl Method {
         }
     }
 
-    /// The model before training. A stream that is left out has the least sizes, so that it weighs next to nothing in the file.
+    /// The model before training.
     pub fn initial(self, setup: &Setup, train: &[&Sample], seed: u64) -> Result<HostModel> {
-        let mut architecture = match self {
+        let architecture = match self {
             Self::Network(architecture, _) => architecture,
             Self::Pbns => Architecture { embedding: PBNS[3], ..Architecture::default() },
             _ => Architecture::default(),
         };
-        let Variant { skeleton, mesh, .. } = self.variant();
-        if !skeleton {
-            architecture.embedding = 1;
-        }
-        if !mesh {
-            architecture = Architecture { basis: 1, layers: 1, heads: 1, features: 4, ..architecture };
-        }
-        let mut model = initial(setup, train, architecture, seed)?;
+        let variant = self.variant();
+        let mut model = initial(setup, train, variant.sizes(architecture), seed)?;
         if self == Self::Pbns {
             let inputs = 12 * model.sizes.joints;
             let mut rng = fastrand::Rng::with_seed(seed);
             model.embedding = crate::train::mlp(&[&[inputs], &PBNS[..]].concat(), &mut rng);
         }
-        if !skeleton {
-            model.skeleton.fill(0.0);
-        }
-        if !mesh {
-            model.mesh.fill(0.0);
-        }
+        variant.silence(&mut model);
         Ok(model)
     }
 }

@@ -73,6 +73,7 @@ pub fn initial(setup: &Setup, train: &[&Sample], architecture: Architecture, see
         layers: (0..layers).map(|l| layer(inputs(l), features, &mut rng)).collect(),
         vertex: mlp(&[features, VERTEX, basis], &mut rng),
         mesh: small(n * 3 * basis, &mut rng),
+        mesh_stream: true,
         surface: Some(setup.surface.clone()).filter(|surface| !surface.vertex.is_empty()),
         body: None,
         training: None,

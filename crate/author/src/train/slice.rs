@@ -11,6 +11,8 @@ const POSES: usize = 50;
 pub struct Slices<'a> {
     /// What is learned from, mixed poses last.
     pub train: Vec<&'a Sample>,
+    /// How many of these are mixed poses.
+    pub mixed: usize,
     /// What is predicted after every epoch.
     pub validation: Vec<&'a Sample>,
 }
@@ -32,5 +34,5 @@ pub fn slices(dataset: &Dataset) -> Result<Slices<'_>> {
             return Err(Error::Dataset(format!("the {name} split is empty: {poses} poses of {clips} clips in all")));
         }
     }
-    Ok(Slices { train, validation })
+    Ok(Slices { train, mixed: dataset.mixed.len(), validation })
 }

@@ -1,5 +1,6 @@
 //! What of the network an ablation leaves out. Paper § Ablation Experiments.
 
+use super::Architecture;
 use ctsn_core::model::HostModel;
 
 /// A part of the network that an ablation leaves out.
@@ -41,11 +42,23 @@ impl Variant {
     }
 
     /// Silences the streams that are left out.
-    pub(super) fn silence(self, model: &mut HostModel) {
+    pub(crate) fn silence(self, model: &mut HostModel) {
         for (basis, learns) in [(&mut model.skeleton, self.skeleton), (&mut model.mesh, self.mesh)] {
             if !learns {
                 basis.fill(0.0);
             }
         }
+        model.mesh_stream &= self.mesh;
+    }
+
+    /// `architecture` with the least sizes for a stream that is left out, which the file names none the less.
+    pub fn sizes(self, mut architecture: Architecture) -> Architecture {
+        if !self.skeleton {
+            architecture.embedding = 1;
+        }
+        if !self.mesh {
+            architecture = Architecture { basis: 1, layers: 1, heads: 1, features: 4, ..architecture };
+        }
+        architecture
     }
 }

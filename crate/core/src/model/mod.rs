@@ -122,6 +122,8 @@ pub struct Model<B, I> {
     pub vertex: Vec<Linear<B>>,
     /// `M`, vertex-major [n, 3, k].
     pub mesh: B,
+    /// Whether M has anything to add. Where all of it is zero, the mesh stream is not computed.
+    pub mesh_stream: bool,
     /// What is drawn, when it differs from the cloth mesh.
     pub surface: Option<Surface>,
     /// What the cloth is kept out of.
@@ -185,6 +187,7 @@ impl<B, I> Model<B, I> {
             layers: self.layers.iter().map(|layer| layer.map(values)).collect(),
             vertex: self.vertex.iter().map(|layer| layer.map(values)).collect(),
             mesh: values(&self.mesh),
+            mesh_stream: self.mesh_stream,
             surface: self.surface.clone(),
             body: self.body.as_ref().map(|body| body.map(values, indices)),
             training: self.training.clone(),

@@ -58,6 +58,7 @@ impl HostModel {
             skeleton,
             layers,
             vertex: mlp(&file, "vertex", features, Some(k))?,
+            mesh_stream: mesh.iter().any(|value| *value != 0.0),
             mesh,
             surface: surface(&file, n)?,
             body: Body::read(&file, n, joints)?,

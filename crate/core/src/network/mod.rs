@@ -152,7 +152,7 @@ pub fn forward<D: Device>(
         return device.skin(&model.rest, &model.reference.skin, &a.body_frame, space, &mut a.positions);
     }
     embedding::skeleton(device, model, a);
-    if streams == Streams::Skeleton {
+    if streams == Streams::Skeleton || !model.mesh_stream {
         return device.skin(&a.coarse, &model.skin, &a.body_frame, space, &mut a.positions);
     }
     graph::mesh(device, model, a);

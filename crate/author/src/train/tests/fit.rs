@@ -126,6 +126,7 @@ fn an_ablation_learns_what_is_left() {
         assert_eq!(after.skin == before.skin, part == Part::Weights);
         // The trained loss is what the predictor makes of the file.
         let read = HostModel::parse(&after.to_bytes(Storage::F32)).unwrap();
+        assert_eq!(read.mesh_stream, part != Part::Mesh);
         let distance = trainer.validate(&train).unwrap().0;
         let mut predictor = ctsn_core::Predictor::from_model(read, Level::new());
         let mut total = 0.0;
@@ -176,22 +177,22 @@ fn dataset(clips: usize, frames: usize) -> Dataset {
 #[test]
 fn validation_is_a_tenth_of_the_training_clips() {
     let many = dataset(20, 3);
-    let Slices { train, validation } = slices(&many).unwrap();
+    let Slices { train, validation, .. } = slices(&many).unwrap();
     let clips =
         |list: &[&Sample]| list.iter().map(|sample| sample.record.clip).collect::<std::collections::BTreeSet<_>>();
     assert_eq!(clips(&validation), [4, 14].into());
     assert_eq!(clips(&train).len(), 16, "20 clips, 2 unseen, 2 to validate");
     assert!(clips(&train).iter().all(|clip| *clip < 18));
     let few = dataset(2, 50);
-    let Slices { train, validation } = slices(&few).unwrap();
+    let Slices { train, validation, .. } = slices(&few).unwrap();
     assert_eq!((train.len(), validation.len()), (82, 8));
     assert!(validation.iter().all(|sample| (41..45).contains(&sample.record.frame)));
     let mut mixed = dataset(2, 50);
     mixed.mixed = mixed.samples[..3].to_vec();
-    let Slices { train, validation } = slices(&mixed).unwrap();
+    let Slices { train, mixed: count, validation } = slices(&mixed).unwrap();
     assert_eq!(
-        (train.len(), validation.len(), mixed.split(Split::Test).len()),
-        (85, 8, 10),
+        (train.len(), count, validation.len(), mixed.split(Split::Test).len()),
+        (85, 3, 8, 10),
         "mixed poses are learned from"
     );
     // By the length of a clip, not by what was kept of it.
