@@ -11,6 +11,9 @@ struct Params {
     steepest: f32,
     sliver: f32,
     folded: f32,
+    // The body's first vertices, spread evenly over it.
+    landmarks: u32,
+    free: f32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
@@ -32,40 +35,6 @@ fn position(vertex: u32) -> vec3<f32> {
 
 fn normal(vertex: u32) -> vec3<f32> {
     return vec3(body_normals[3u * vertex], body_normals[3u * vertex + 1u], body_normals[3u * vertex + 2u]);
-}
-
-// Where a walk ended: vertex, squared distance to it, highest corner of the triangles around it along its normal.
-struct Place {
-    vertex: u32,
-    squared: f32,
-    top: f32,
-}
-
-// The nearest vertex downhill from the nearest of some seeds.
-fn walk(i: u32, point: vec3<f32>, first: u32, end: u32) -> Place {
-    var best = 0u;
-    var least = 3.4e38;
-    for (var s = first; s < end; s++) {
-        let vertex = seeds_of[s * params.vertices + i];
-        let found = squared(point - position(vertex));
-        best = select(best, vertex, found < least);
-        least = min(least, found);
-    }
-    for (var step = 0u; step < params.steps; step++) {
-        let before = best;
-        var top = 0.0;
-        for (var k = offsets[before]; k < offsets[before + 1u]; k++) {
-            let vertex = fans[k].x;
-            let found = squared(point - position(vertex));
-            top = max(top, dot(position(vertex) - position(before), normal(before)));
-            best = select(best, vertex, found < least);
-            least = min(least, found);
-        }
-        if (best == before) {
-            return Place(best, least, top);
-        }
-    }
-    return Place(best, least, 3.4e38);
 }
 
 // The displacement to the gap, and the squared distance to the body around a place.
@@ -107,12 +76,17 @@ fn collide(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let point = vec3(positions[3u * i], positions[3u * i + 1u], positions[3u * i + 2u]);
     let own = max(params.seeds - 1u, 1u);
-    var by = push_from(point, walk(i, point, 0u, own));
+    var by = push_from(point, from_seeds(i, point, 0u, own));
     let last = (params.seeds - 1u) * params.vertices + i;
     // The last seed lies on another part of the body, where the cloth comes near one: the nearer part decides.
     if (seeds_of[last] != seeds_of[i]) {
-        let second = push_from(point, walk(i, point, own, params.seeds));
+        let second = push_from(point, from_seeds(i, point, own, params.seeds));
         by = select(by, second, second.w < by.w);
+    }
+    // So it does where cloth hangs free of its own places.
+    if (by.w > params.free * params.free) {
+        let third = push_from(point, from_landmarks(point));
+        by = select(by, third, third.w < by.w);
     }
     push[3u * i] = by.x;
     push[3u * i + 1u] = by.y;

@@ -79,7 +79,18 @@ params! {
     /// `Params` of body_frame.wgsl.
     BodyFrame { joints: u32, root: u32, yaw: u32 }
     /// `Params` of collide.wgsl.
-    Collide { vertices: u32, seeds: u32, steps: u32, gap: f32, depth: f32, steepest: f32, sliver: f32, folded: f32 }
+    Collide {
+        vertices: u32,
+        seeds: u32,
+        steps: u32,
+        gap: f32,
+        depth: f32,
+        steepest: f32,
+        sliver: f32,
+        folded: f32,
+        landmarks: u32,
+        free: f32
+    }
     /// `Params` of features.wgsl.
     Features { mean: [f32; 3], edge_scale: f32, deviation: [f32; 3], vertices: u32 }
     /// `Params` of lift.wgsl.
@@ -124,7 +135,7 @@ shaders! {
     /// Joints, inverse bind, standard -> transforms, pose vector.
     BODY_FRAME: BodyFrame, "body_frame" + [], [Read Read Read Write Write], [64, 1];
     /// Body, its normals, offsets, fans, seeds, positions -> push.
-    COLLIDE: Collide, "collide" + ["collide.triangle"], [Read Read Read Read Read Read Write], [64, 1];
+    COLLIDE: Collide, "collide" + ["collide.walk", "collide.triangle"], [Read Read Read Read Read Read Write], [64, 1];
     /// V, T_C -> nodes, potentials.
     FEATURES: Features, "features" + [], [Read Read Write Write], [64, 1];
     /// Displacement -> positions.

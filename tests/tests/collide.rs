@@ -108,6 +108,44 @@ fn what_is_inside_comes_out_and_what_is_outside_stays() {
     assert!(inside > 100 && outside > 1000, "{inside} inside, {outside} outside");
 }
 
+/// Two spheres far apart, a landmark of either first; the cloth, in and around the second, has all its seeds on the first.
+fn two_spheres(rng: &mut Rng) -> HostModel {
+    let (near, faces) = sphere();
+    let count = (near.len() / 3) as u32;
+    let moved: Vec<f32> = near.chunks_exact(3).flat_map(|p| [p[0] + APART, p[1], p[2]]).collect();
+    let mut positions = [near, moved].concat();
+    let mut triangles = [faces.clone(), faces.iter().map(|i| i + count).collect()].concat();
+    // A vertex of the second trades places with the first one's second.
+    (0..3).for_each(|c| positions.swap(3 + c, 3 * count as usize + c));
+    let traded = |i: u32| [(1, count), (count, 1)].into_iter().find(|trade| trade.0 == i).map_or(i, |trade| trade.1);
+    triangles.iter_mut().for_each(|i| *i = traded(*i));
+    let places = points(rng, 2000).chunks_exact(3).flat_map(|p| [p[0] + APART, p[1], p[2]]).collect();
+    let mut model = model(rng, places, positions, triangles);
+    let body = model.body.as_mut().expect("a body");
+    body.seeds.iter_mut().for_each(|seed| *seed = 2 + *seed % (count - 2));
+    model
+}
+
+/// Distance between the middles of the two spheres, metres.
+const APART: f32 = 0.3;
+
+#[test]
+fn cloth_that_hangs_free_comes_out_of_what_it_never_met() {
+    let model = two_spheres(&mut Rng::with_seed(9));
+    let sagitta = RADIUS * (1.0 - (std::f32::consts::PI / RINGS as f32).cos());
+    let from_middle = |point: &[f32]| length(&[point[0] - APART, point[1], point[2]]);
+    let mut inside = 0;
+    for (place, found) in model.rest.chunks_exact(3).zip(predict(&model).chunks_exact(3)) {
+        if from_middle(place) < RADIUS - sagitta {
+            inside += 1;
+            assert!(from_middle(found) > RADIUS - sagitta + 0.9 * GAP, "{place:?} came to {found:?}");
+        } else if from_middle(place) > RADIUS + 1.01 * GAP {
+            assert!(place.iter().zip(found).all(|(a, b)| (a - b).abs() < 1e-6), "{place:?} was moved to {found:?}");
+        }
+    }
+    assert!(inside > 50, "{inside} inside");
+}
+
 #[test]
 fn no_body_makes_nan() {
     #[cfg(not(target_arch = "wasm32"))]
@@ -168,6 +206,14 @@ fn on_gpu(gpu: &ctsn_gpu::Gpu, model: &HostModel) -> Vec<f32> {
     let mut predictor = block_on(ctsn_gpu::Predictor::new(&model)).expect("a predictor");
     predictor.predict_row_major(&STILL, Streams::Both).expect("a pose");
     block_on(predictor.read()).expect("a prediction").positions
+}
+
+#[cfg(not(target_arch = "wasm32"))]
+#[test]
+fn the_gpu_finds_what_cloth_never_met() {
+    let model = two_spheres(&mut Rng::with_seed(10));
+    let difference = predict(&model).iter().zip(on_gpu(&gpu(), &model)).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+    assert!(difference <= 1e-4, "{difference}");
 }
 
 #[cfg(not(target_arch = "wasm32"))]

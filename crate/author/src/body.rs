@@ -4,7 +4,8 @@
 use crate::Result;
 use crate::dataset::{Sample, Setup};
 use crate::rig::{Character, Mesh, pose, vertices};
-use crate::simulate::{hull, to_body_frame};
+use crate::simulate::{covering, hull, to_body_frame};
+use ctsn_core::cpu::collide::LANDMARKS;
 use ctsn_core::model::{Body, Fans, Skin};
 use ctsn_core::topology::Graph;
 use glam::DVec3;
@@ -23,14 +24,18 @@ const REACH: f64 = 0.15;
 const RINGS: usize = 3;
 /// Places per cloth vertex from which the closest one is searched.
 const SEEDS: usize = 4;
+/// A triangle drawn to so many times its length is none of the body.
+const TORN: f64 = 6.0;
 /// A search that ends so much too far has missed the closest place, metres.
 const MISSED: f64 = 0.004;
 
 /// The body for the cloth of `setup`, as `samples` wear it.
 pub fn body(setup: &Setup, samples: &[&Sample]) -> Result<Body<Vec<f32>, Vec<u32>>> {
-    let skin = hull(&setup.character()?, VERTICES)?;
+    let character = setup.character()?;
+    let mut skin = covering(hull(&character, VERTICES)?, &character);
     let step = samples.len().div_ceil(POSES).max(1);
     let poses: Vec<&&Sample> = samples.iter().step_by(step).collect();
+    tear(&mut skin, &poses);
     let nearest = |sample: &&&Sample| nearest(&skin, sample);
     let seen: Vec<Vec<Option<u32>>> = poses.par_iter().map(nearest).collect::<Result<_>>()?;
     let mut visits = vec![BTreeMap::new(); setup.template.len() / 3];
@@ -43,6 +48,24 @@ pub fn body(setup: &Setup, samples: &[&Sample]) -> Result<Body<Vec<f32>, Vec<u32
     let missed: Vec<Vec<Option<u32>>> = poses.par_iter().zip(&seen).map(missed).collect();
     add_other_side(&mut seeds, &missed, &Graph::new(setup.template.len() / 3, &setup.triangles));
     Ok(cut(&skin, &visits, &seeds))
+}
+
+/// Drops triangles that some pose draws long: a coarse skin joins legs that nearly touch in the canonical pose, and spans what is between
+/// them when they part. (A skirt's hem was thrown 79 mm off by such a web, and trembled twice as much.)
+fn tear(skin: &mut Character, poses: &[&&Sample]) {
+    let longest = |corners: [DVec3; 3]| (0..3).map(|k| corners[k].distance(corners[(k + 1) % 3])).fold(0.0, f64::max);
+    let lengths = |positions: &[DVec3]| -> Vec<f64> {
+        skin.body.triangles.iter().map(|triangle| longest(triangle.map(|i| positions[i as usize]))).collect()
+    };
+    let rest = lengths(&skin.body.positions);
+    let whole = |sample: &&&Sample| -> Vec<bool> {
+        let posed = lengths(&skin.pose_body(&to_body_frame(skin, &pose(&sample.joints))));
+        posed.iter().zip(&rest).map(|(posed, rest)| *posed < TORN * rest).collect()
+    };
+    let all = |a: Vec<bool>, b: Vec<bool>| a.iter().zip(&b).map(|(a, b)| *a && *b).collect();
+    let whole = poses.par_iter().map(whole).reduce(|| vec![true; rest.len()], all);
+    let mut whole = whole.iter();
+    skin.body.triangles.retain(|_| whole.next().is_none_or(|whole| *whole));
 }
 
 /// The skin vertex closest to each cloth vertex of a pose.
@@ -122,6 +145,21 @@ fn add_other_side(seeds: &mut [[u32; SEEDS]], missed: &[Vec<Option<u32>>], cloth
     }
 }
 
+/// Puts places that lie evenly over the skin first in `list`, as cloth far from its seeds is searched from there: always the one
+/// furthest from those before.
+fn landmarks_first(positions: &[DVec3], list: &mut [usize]) {
+    let mut distances = vec![f64::INFINITY; list.len()];
+    for next in 0..LANDMARKS.min(list.len()) {
+        let furthest = (next..list.len()).max_by(|a, b| distances[*a].total_cmp(&distances[*b])).unwrap_or(next);
+        list.swap(next, furthest);
+        distances.swap(next, furthest);
+        let landmark = positions[list[next]];
+        let nearer =
+            |(distance, place): (&mut f64, &usize)| *distance = distance.min(positions[*place].distance(landmark));
+        distances.iter_mut().zip(list.iter()).for_each(nearer);
+    }
+}
+
 /// The part of the skin that was seen, [`RINGS`] rings around it included.
 fn cut(skin: &Character, visits: &[BTreeMap<u32, usize>], seeds: &[[u32; SEEDS]]) -> Body<Vec<f32>, Vec<u32>> {
     let Mesh { positions, triangles } = &skin.body;
@@ -134,7 +172,8 @@ fn cut(skin: &Character, visits: &[BTreeMap<u32, usize>], seeds: &[[u32; SEEDS]]
         let before = kept.clone();
         (0..kept.len()).for_each(|i| kept[i] |= graph.of(i).iter().any(|j| before[*j as usize]));
     }
-    let list: Vec<usize> = (0..kept.len()).filter(|i| kept[*i]).collect();
+    let mut list: Vec<usize> = (0..kept.len()).filter(|i| kept[*i]).collect();
+    landmarks_first(positions, &mut list);
     let mut place = vec![0; kept.len()];
     list.iter().enumerate().for_each(|(new, old)| place[*old] = new as u32);
     let whole = triangles.iter().filter(|triangle| triangle.iter().all(|i| kept[*i as usize]));

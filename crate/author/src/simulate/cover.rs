@@ -15,15 +15,17 @@ const DEEPEST: f64 = 0.05;
 const FURTHEST: f64 = 0.04;
 /// Cosine of the greatest angle between the way from the skin to a point and the skin's normal: the skin does not end there.
 const UPRIGHT: f64 = 0.9;
-/// What may stay outside of the skin, metres: cloth keeps its thickness from it. From there to twice as far out the skin is raised more
+/// What may stay outside of a fine skin, metres: cloth keeps its thickness from it. From there to twice as far out the skin is raised more
 /// and more, without a jump, until it covers the point.
-const SLACK: f64 = 0.004;
+pub(super) const SLACK: f64 = 0.004;
 /// Rounds of raising: corners move along their own normals, which covers a point between them only in part.
 const ROUNDS: usize = 2;
 
 /// The points of the body that its skin must cover.
 pub(super) struct Cover {
     points: Vec<Point>,
+    /// What may stay outside of the skin, metres.
+    slack: f64,
 }
 
 /// A point of the body, and the face of the skin above it in the canonical pose.
@@ -34,8 +36,8 @@ struct Point {
 }
 
 impl Cover {
-    /// The points of `body` under what cloth touches of `skin`.
-    pub fn new(body: &Collider, skin: &Collider) -> Self {
+    /// The points of `body` under what cloth touches of `skin`, of which `slack` may stay outside, metres.
+    pub fn new(body: &Collider, skin: &Collider, slack: f64) -> Self {
         let (posed, above) = (PosedBody::new(body, body.rest.clone()), PosedBody::new(skin, skin.rest.clone()));
         let faces = (0..body.faces.len() as u32).filter(|face| body.touched[*face as usize]);
         let lattice = faces.flat_map(|face| {
@@ -47,7 +49,7 @@ impl Cover {
             let hit = above.closest(posed.point(face, barycentric), None, DEEPEST)?;
             Some(Point { face, barycentric, skin: hit.face })
         };
-        Self { points: lattice.filter_map(bind).collect() }
+        Self { points: lattice.filter_map(bind).collect(), slack }
     }
 
     /// How far each vertex of the skin is to be raised along its normal so that the posed body is covered, metres.
@@ -58,8 +60,8 @@ impl Cover {
             let out = |point: &Point| {
                 let place = body.point(point.face, point.barycentric);
                 let hit = posed.closest_around(place, point.skin, FURTHEST)?;
-                (hit.distance > SLACK && hit.normal.dot(posed.normal(hit.face)) > UPRIGHT)
-                    .then_some((hit.face, hit.distance.min(2.0 * (hit.distance - SLACK))))
+                (hit.distance > self.slack && hit.normal.dot(posed.normal(hit.face)) > UPRIGHT)
+                    .then_some((hit.face, hit.distance.min(2.0 * (hit.distance - self.slack))))
             };
             let out: Vec<(u32, f64)> = self.points.iter().filter_map(out).collect();
             if out.is_empty() {

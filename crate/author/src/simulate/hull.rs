@@ -5,11 +5,13 @@
 use std::collections::BTreeMap;
 
 use super::collider::{Collider, check};
+use super::cover::Cover;
 use super::posed::PosedBody;
 use crate::garment;
 use crate::rig::{Character, Mesh, SkinWeights};
 use crate::triangle;
 use crate::{Error, Result};
+use glam::DAffine3;
 
 /// What stays between the skin and the body, metres.
 const GAP: f64 = 0.0015;
@@ -45,6 +47,16 @@ pub fn hull(character: &Character, vertices: usize) -> Result<Character> {
         true => Err(Error::Character("the body encloses nothing a garment could touch".into())),
         false => Ok(Character { body, weights, ..character.clone() }),
     }
+}
+
+/// `skin` raised over what of the canonical body comes out through it: the triangles of a coarse one cut off thumbs.
+pub fn covering(skin: Character, character: &Character) -> Character {
+    let all = vec![true; skin.joints.len()];
+    let [body, collider] = [character, &skin].map(|character| Collider::of_joints(character, &all));
+    let canonical = vec![DAffine3::IDENTITY; all.len()];
+    let heights = Cover::new(&body, &collider, 0.0).heights(&body.pose(&canonical), &collider, &canonical);
+    let positions = collider.pose(&canonical).offset(&heights, 1.0);
+    Character { body: Mesh { positions, triangles: collider.faces }, weights: collider.weights, ..skin }
 }
 
 /// Area of a mesh, square metres.

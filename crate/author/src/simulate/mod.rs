@@ -28,7 +28,7 @@ mod transport;
 mod tests;
 
 pub use distance::BodyDistance;
-pub use hull::hull;
+pub use hull::{covering, hull};
 pub use material::{GRAVITY, Material};
 pub use outcome::{Outcome, Status};
 pub(crate) use path::is_sound;

@@ -8,7 +8,7 @@ use glam::{DAffine3, DVec3};
 use super::cloth::Cloth;
 use super::collider::{Collider, blend};
 use super::contact::Pin;
-use super::cover::Cover;
+use super::cover::{Cover, SLACK};
 use super::distance::BodyDistance;
 use super::grain::warp;
 use super::hull::{hull, smooth};
@@ -53,7 +53,7 @@ impl Simulator {
         smooth(&mut skin);
         let collider = Collider::new(&skin, &garment.mesh, settings.reach)?;
         let body = BodyDistance::new(character, &garment.mesh)?;
-        let cover = Cover::new(&body.collider, &collider);
+        let cover = Cover::new(&body.collider, &collider, SLACK);
         let layout = Arc::new(Layout::new(&cloth, &[])?);
         let attached = attach(&collider, &rest, &settings.attached);
         let adjacency = adjacency(&cloth);

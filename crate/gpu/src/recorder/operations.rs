@@ -194,6 +194,8 @@ impl Device for Recorder<'_> {
             steepest: collide::STEEPEST,
             sliver: collide::SLIVER,
             folded: collide::FOLDED,
+            landmarks: collide::LANDMARKS.min(body.vertices) as u32,
+            free: collide::FREE,
         };
         // A walk of about two steps, six triangles around each vertex.
         self.dispatch(&shaders::COLLIDE, params, &operands, [n, 1], *push, n * (8 * (width + 12) + 6 * 60));

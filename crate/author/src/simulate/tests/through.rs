@@ -6,8 +6,8 @@ use super::scene::{legs, rigid, skirt, sphere};
 use crate::garment::SKIN;
 use crate::rig::{Character, Garment, Mesh, Pose};
 use crate::simulate::collider::Collider;
-use crate::simulate::cover::Cover;
-use crate::simulate::hull::hull;
+use crate::simulate::cover::{Cover, SLACK};
+use crate::simulate::hull::{covering, hull};
 use crate::simulate::{BodyDistance, Material, Settings, Simulator, Status};
 
 /// Nothing is inside an open shell's mouth, though it is behind the nearest face.
@@ -54,7 +54,7 @@ fn skin_is_raised_over_what_comes_out_through_it() {
     let character = nested();
     let (body, skin) = (&character, hull(&character, SKIN).unwrap());
     let [body, skin] = [body, &skin].map(|mesh| Collider::of_joints(mesh, &[true, true]));
-    let cover = Cover::new(&body, &skin);
+    let cover = Cover::new(&body, &skin, SLACK);
     let out = |shift: f64| {
         let skinning = [DAffine3::IDENTITY, DAffine3::from_translation(DVec3::X * shift)];
         let posed = body.pose(&skinning);
@@ -70,6 +70,27 @@ fn skin_is_raised_over_what_comes_out_through_it() {
     let (raised, highest) = out(0.055);
     // Without raising, the inner ball is 25 mm out.
     assert!(raised > 10 && highest < 0.006, "{raised} raised, still {:.1} mm out", 1e3 * highest);
+}
+
+#[test]
+fn a_coarse_skin_is_raised_over_what_it_cuts_off() {
+    // A thumb of 4 mm radius on a ball.
+    let mut character = rigid(sphere(0.2, 4));
+    let mut thumb = sphere(0.004, 2);
+    thumb.positions.iter_mut().for_each(|place| *place = DVec3::new(place.x, 0.2 + 3.0 * place.y, place.z));
+    let first = character.body.positions.len() as u32;
+    character.weights.extend(vec![vec![(0, 1.0)]; thumb.positions.len()]);
+    character.body.positions.extend(&thumb.positions);
+    character.body.triangles.extend(thumb.triangles.iter().map(|triangle| triangle.map(|i| i + first)));
+    let skin = hull(&character, 300).unwrap();
+    let highest = |skin: &Character| {
+        let skin = Collider::of_joints(skin, &[true]);
+        let skin = skin.pose(&[DAffine3::IDENTITY]);
+        let hits = character.body.positions.iter().filter_map(|place| skin.closest(*place, None, 0.1));
+        hits.map(|hit| hit.distance).fold(-1.0, f64::max)
+    };
+    let (before, after) = (highest(&skin), highest(&covering(skin, &character)));
+    assert!(before > 0.004 && after < 0.001, "{:.1} mm out, then {:.1}", 1e3 * before, 1e3 * after);
 }
 
 /// Both knees drawn up until the thighs are in the belly.
