@@ -65,7 +65,7 @@ fn tear(skin: &mut Character, poses: &[&&Sample]) {
     let all = |a: Vec<bool>, b: Vec<bool>| a.iter().zip(&b).map(|(a, b)| *a && *b).collect();
     let whole = poses.par_iter().map(whole).reduce(|| vec![true; rest.len()], all);
     let mut whole = whole.iter();
-    skin.body.triangles.retain(|_| whole.next().is_none_or(|whole| *whole));
+    skin.body.triangles.retain(|_| whole.next() == Some(&true));
 }
 
 /// The skin vertex closest to each cloth vertex of a pose.
@@ -193,5 +193,46 @@ fn cut(skin: &Character, visits: &[BTreeMap<u32, usize>], seeds: &[[u32; SEEDS]]
         fans: Fans::new(list.len(), &triangles),
         triangles,
         seeds: seeds.as_flattened().iter().map(|seed| place[*seed as usize]).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::synthetic;
+
+    #[test]
+    fn what_spans_two_limbs_is_dropped() {
+        let (setup, mut samples) = synthetic::dataset(120, 2, 2);
+        let mut skin = setup.character().unwrap();
+        let half = skin.weights.len() / 2;
+        (0..skin.weights.len()).for_each(|i| skin.weights[i] = vec![(usize::from(i >= half), 1.0)]);
+        let torn = |samples: &[Sample]| {
+            let mut skin = skin.clone();
+            tear(&mut skin, &samples.iter().collect::<Vec<_>>().iter().collect::<Vec<_>>());
+            skin.body.triangles
+        };
+        assert_eq!(torn(&samples), skin.body.triangles);
+        // The second joint leaves by five metres, in one pose of two.
+        samples[1].joints[12 + 7] += 5.0;
+        let one =
+            |triangle: &&[u32; 3]| triangle.iter().all(|i| (*i as usize >= half) == (triangle[0] as usize >= half));
+        let kept: Vec<[u32; 3]> = skin.body.triangles.iter().filter(one).copied().collect();
+        assert!(kept.len() < skin.body.triangles.len());
+        assert_eq!(torn(&samples), kept);
+    }
+
+    #[test]
+    fn landmarks_lie_evenly() {
+        let line: Vec<DVec3> = (0..1000).map(|i| DVec3::X * f64::from(i)).collect();
+        let mut list: Vec<usize> = (0..line.len()).collect();
+        landmarks_first(&line, &mut list);
+        let mut landmarks = list[..LANDMARKS].to_vec();
+        landmarks.sort_unstable();
+        let widest = landmarks.windows(2).map(|pair| pair[1] - pair[0]).max().unwrap();
+        // 1000 / 64, at most twice that after halving and halving.
+        assert!((landmarks[0], landmarks[LANDMARKS - 1]) == (0, 999) && widest <= 32, "{landmarks:?}");
+        list.sort_unstable();
+        assert!(list.into_iter().eq(0..line.len()));
     }
 }
