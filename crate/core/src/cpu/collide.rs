@@ -16,7 +16,8 @@ pub const STEPS: usize = 12;
 pub const STEEPEST: f32 = 0.5;
 
 /// The body's first vertices, spread evenly over it: cloth that hangs free is searched from the nearest of them, too. (From its own
-/// places alone, the back of a robe did not find a foot lifted higher than in training: 35 mm inside.)
+/// places alone, the back of a robe did not find a foot lifted higher than in training: 35 mm inside. 24 of them cost it 0.2 ms of 2.9 less,
+/// and left a vertex 2.1 mm inside.)
 pub const LANDMARKS: usize = 64;
 /// Distance from its own places beyond which cloth hangs free, or is too deep inside to trust them, metres. (With 0.08, a robe kept a
 /// vertex 2.8 mm inside.)
