@@ -2,6 +2,7 @@
 //! coordinates. f = |x - body| - looseness, smoothed; garment = {f = 0} between the openings. simulation.md §4.2.
 
 mod anatomy;
+mod apart;
 mod check;
 mod curve;
 mod cut;
@@ -36,6 +37,7 @@ mod obstacle_test;
 #[cfg(test)]
 mod test;
 
+pub use apart::apart;
 pub use check::{Findings, check, load};
 pub use drape::{Rest, drape};
 pub use hull::{SKIN, hull};

@@ -38,20 +38,8 @@ impl Collider {
     /// Keeps the triangles of every obstacle, and of every joint that moves a body vertex within `reach` metres of the garment,
     /// canonical.
     pub fn new(character: &Character, garment: &Mesh, reach: f64) -> Result<Self> {
-        let body = &character.body.positions;
         check(character)?;
-        let points: Vec<[f64; 3]> = garment.positions.iter().map(|p| p.to_array()).collect();
-        let tree: ImmutableKdTree<f64, 3> = ImmutableKdTree::new_from_slice(&points)
-            .map_err(|error| Error::Garment(format!("nearest-vertex search: {error:?}")))?;
-        let distance: Vec<f64> = body
-            .iter()
-            .map(|p| tree.query(&p.to_array()).nearest_one::<SquaredEuclidean<f64>>().execute().distance.sqrt())
-            .collect();
-        near_enough(body, &distance)?;
-        let mut near: Vec<bool> = (0..character.joints.len()).map(|joint| character.is_obstacle(joint)).collect();
-        for (weights, distance) in character.weights.iter().zip(&distance) {
-            near[strongest(weights)] |= *distance < reach;
-        }
+        let near = joints_near(character, garment, reach)?;
         let collider = Self::of_joints(character, &near);
         if !collider.touched.contains(&true) {
             return Err(Error::Garment(format!("wanted body triangles within {reach} m, found none")));
@@ -120,6 +108,25 @@ impl Collider {
         }
         sum.into_iter().collect()
     }
+}
+
+/// Whether each joint's part of the body is felt by the garment: all obstacles are, and what has a vertex within `reach` metres of it, both
+/// canonical.
+pub(super) fn joints_near(character: &Character, garment: &Mesh, reach: f64) -> Result<Vec<bool>> {
+    let body = &character.body.positions;
+    let points: Vec<[f64; 3]> = garment.positions.iter().map(|p| p.to_array()).collect();
+    let tree: ImmutableKdTree<f64, 3> = ImmutableKdTree::new_from_slice(&points)
+        .map_err(|error| Error::Garment(format!("nearest-vertex search: {error:?}")))?;
+    let distance: Vec<f64> = body
+        .iter()
+        .map(|p| tree.query(&p.to_array()).nearest_one::<SquaredEuclidean<f64>>().execute().distance.sqrt())
+        .collect();
+    near_enough(body, &distance)?;
+    let mut near: Vec<bool> = (0..character.joints.len()).map(|joint| character.is_obstacle(joint)).collect();
+    for (weights, distance) in character.weights.iter().zip(&distance) {
+        near[strongest(weights)] |= *distance < reach;
+    }
+    Ok(near)
 }
 
 /// `Σ_j w_j M_j`.

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::collider::Collider;
+use super::collider::{Collider, joints_near};
 use super::path::to_body_frame;
 use super::posed::PosedBody;
 use crate::Result;
@@ -14,6 +14,11 @@ const REACH: f64 = 0.3;
 /// A vertex that is moved out of the body ends this far from it, metres, or on the way between two of its parts after so many moves.
 const CLEAR: f64 = 5e-4;
 const MOVES: usize = 8;
+
+/// Whether each joint's part of the body is one that `garment` feels, both canonical: the hands of a figure in a skirt are not.
+pub fn felt(character: &Character, garment: &Mesh) -> Result<Vec<bool>> {
+    joints_near(character, garment, REACH)
+}
 
 /// A body prepared for distance queries.
 pub struct BodyDistance {

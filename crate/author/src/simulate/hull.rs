@@ -4,19 +4,21 @@
 
 use std::collections::BTreeMap;
 
-use super::collider::{Collider, check};
+use super::collider::{Collider, blend, check};
 use super::cover::Cover;
-use super::posed::PosedBody;
 use crate::garment;
-use crate::rig::{Character, Mesh, SkinWeights};
+use crate::rig::{Character, Mesh, Pose, SkinWeights};
 use crate::triangle;
 use crate::{Error, Result};
 use glam::DAffine3;
+use rayon::prelude::*;
 
 /// What stays between the skin and the body, metres.
 const GAP: f64 = 0.0015;
 /// Rounds of averaging over the skin's neighbours, so that coarse bodies do not bend it in steps.
 const ROUNDS: usize = 4;
+/// How far the skin is raised for what comes out in some poses only, metres.
+const HIGHEST: f64 = 0.003;
 /// Joints a vertex of the skin may follow.
 const JOINTS: usize = 6;
 
@@ -25,8 +27,8 @@ const FEWEST: usize = 200;
 
 /// The character with its outer skin, of about so many vertices, for a body: one closed mesh for the figure and one for each obstacle, so
 /// that one far away does not coarsen the figure's and one in a hand stays stiff. Vertices are dealt by area;
-/// each follows the body point under it.
-pub fn hull(character: &Character, vertices: usize) -> Result<Character> {
+/// each follows the body point under it. It is wrapped around the body in `pose` (world), and brought back to the canonical one.
+pub fn hull(character: &Character, pose: &Pose, vertices: usize) -> Result<Character> {
     check(character)?;
     let joints = 0..character.joints.len();
     let figure = character.part(|joint| !character.is_obstacle(joint));
@@ -37,7 +39,7 @@ pub fn hull(character: &Character, vertices: usize) -> Result<Character> {
     let whole = areas.iter().sum::<f64>().max(f64::MIN_POSITIVE);
     let (mut body, mut weights) = (Mesh::default(), Vec::new());
     for (part, area) in parts.iter().zip(areas) {
-        let skin = part_hull(part, ((vertices as f64 * area / whole) as usize).max(FEWEST))?;
+        let skin = part_hull(part, pose, ((vertices as f64 * area / whole) as usize).max(FEWEST))?;
         let first = body.positions.len() as u32;
         body.triangles.extend(skin.body.triangles.iter().map(|triangle| triangle.map(|corner| first + corner)));
         body.positions.extend(skin.body.positions);
@@ -49,13 +51,20 @@ pub fn hull(character: &Character, vertices: usize) -> Result<Character> {
     }
 }
 
-/// `skin` raised over what of the canonical body comes out through it: the triangles of a coarse one cut off thumbs.
-pub fn covering(skin: Character, character: &Character) -> Character {
+/// `skin` raised over what of the body comes out through it: all of the canonical one (the triangles of a coarse skin cut off thumbs), and
+/// [`HIGHEST`] in other poses, `A_j` [J] each, where knees come out. (Raised over all of it, the skin of a robot of loose shells threw a
+/// skirt 40 mm off.)
+pub fn covering(skin: Character, character: &Character, poses: &[Vec<DAffine3>]) -> Character {
     let all = vec![true; skin.joints.len()];
     let [body, collider] = [character, &skin].map(|character| Collider::of_joints(character, &all));
+    let cover = Cover::new(&body, &collider, 0.0);
+    let heights = |skinning: &Vec<DAffine3>| cover.heights(&body.pose(skinning), &collider, skinning);
     let canonical = vec![DAffine3::IDENTITY; all.len()];
-    let heights = Cover::new(&body, &collider, 0.0).heights(&body.pose(&canonical), &collider, &canonical);
-    let positions = collider.pose(&canonical).offset(&heights, 1.0);
+    let higher = |a: Vec<f64>, b: Vec<f64>| a.iter().zip(&b).map(|(a, b)| a.max(*b)).collect();
+    let posed = poses.par_iter().map(heights).reduce(|| vec![0.0; collider.rest.len()], higher);
+    let raised: Vec<f64> =
+        heights(&canonical).iter().zip(posed).map(|(own, posed)| own.max(posed.min(HIGHEST))).collect();
+    let positions = collider.pose(&canonical).offset(&raised, 1.0);
     Character { body: Mesh { positions, triangles: collider.faces }, weights: collider.weights, ..skin }
 }
 
@@ -66,10 +75,13 @@ fn area(mesh: &Mesh) -> f64 {
 }
 
 /// The outer skin of all of a body.
-fn part_hull(character: &Character, vertices: usize) -> Result<Character> {
-    let (mut mesh, distance) = garment::hull(character, vertices)?;
+fn part_hull(character: &Character, pose: &Pose, vertices: usize) -> Result<Character> {
+    let positions = character.pose_body(pose);
+    let body = Mesh { positions, triangles: character.body.triangles.clone() };
+    let (mut mesh, distance) = garment::hull(&Character { body, ..character.clone() }, vertices)?;
     let collider = Collider::of_joints(character, &vec![true; character.joints.len()]);
-    let body = PosedBody::new(&collider, collider.rest.clone());
+    let skinning = character.skinning(pose);
+    let body = collider.pose(&skinning);
     let mut weights: Vec<SkinWeights> = Vec::with_capacity(mesh.positions.len());
     for position in &mut mesh.positions {
         let Some(hit) = body.closest(*position, None, 10.0 * distance) else {
@@ -80,6 +92,9 @@ fn part_hull(character: &Character, vertices: usize) -> Result<Character> {
         *position -= hit.normal * (distance - GAP).min(hit.distance - GAP);
     }
     weights.iter_mut().for_each(keep_strongest);
+    for (position, weights) in mesh.positions.iter_mut().zip(&weights) {
+        *position = blend(weights, &skinning).inverse().transform_point3(*position);
+    }
     Ok(Character { body: mesh, weights, ..character.clone() })
 }
 

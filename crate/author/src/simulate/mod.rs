@@ -27,7 +27,7 @@ mod transport;
 #[cfg(test)]
 mod tests;
 
-pub use distance::BodyDistance;
+pub use distance::{BodyDistance, felt};
 pub use hull::{covering, hull};
 pub use material::{GRAVITY, Material};
 pub use outcome::{Outcome, Status};

@@ -49,7 +49,8 @@ impl Simulator {
         let rest = garment.mesh.positions.clone();
         settings.check(rest.len())?;
         let cloth = Cloth::new(&garment.mesh, &warp(garment), &material, settings.shape)?;
-        let mut skin = hull(character, SKIN)?;
+        // With limbs apart, as for the repair, two of three garments answered half a degree with more (7.9 -> 8.6, 7.0 -> 8.7, 8.3 -> 5.7 mm).
+        let mut skin = hull(character, &character.canonical_pose(), SKIN)?;
         smooth(&mut skin);
         let collider = Collider::new(&skin, &garment.mesh, settings.reach)?;
         let body = BodyDistance::new(character, &garment.mesh)?;

@@ -21,7 +21,8 @@ fn scene(away: DVec3) -> Character {
 
 #[test]
 fn every_part_has_a_skin_and_an_obstacle_s_is_stiff() {
-    let [near, far] = [DVec3::ZERO, DVec3::new(0.0, 0.0, -6.0)].map(|away| hull(&scene(away), 2000).unwrap());
+    let skin = |scene: Character| hull(&scene, &scene.canonical_pose(), 2000).unwrap();
+    let [near, far] = [DVec3::ZERO, DVec3::new(0.0, 0.0, -6.0)].map(|away| skin(scene(away)));
     for skin in [&near, &far] {
         assert!(skin.weights.iter().all(|row| row.len() == 1), "a vertex follows two joints");
         let parts = [0, 1].map(|joint| skin.part(|own| own == joint).body);
@@ -36,7 +37,7 @@ fn every_part_has_a_skin_and_an_obstacle_s_is_stiff() {
 fn a_body_may_be_of_several_parts() {
     let mut scene = scene(DVec3::ZERO);
     scene.joints[1].name = "Chair".into();
-    let skin = hull(&scene, 2000).unwrap();
+    let skin = hull(&scene, &scene.canonical_pose(), 2000).unwrap();
     assert!([0, 1].iter().all(|joint| skin.weights.iter().any(|row| row[0].0 == *joint)));
 }
 
