@@ -18,7 +18,7 @@ const PAIRS = {
   'monster-robe': {},
   'dolphin-vest': {},
   'cat-coat': {},
-  'fox-cape': { mixed: 400 },
+  'fox-cape': { mixed: 1600 },
   'sphere-sheet': {},
   'box-sheet': {},
 };

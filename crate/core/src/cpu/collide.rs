@@ -110,9 +110,9 @@ impl Posed<'_> {
     }
 
     /// Squared distance to the body below the seeds, and the displacement to its gap; zero where there is room.
-    /// Tried and rejected: going on by the closest triangles after the walk (slow motion of a cape trembled by 8.9 instead of 9.3 % more,
-    /// more was left inside elsewhere), and looking from further out along the first seed's normal where a vertex is deep, so that
-    /// it keeps its side of a thin leg (no steadier: what trembles is predicted in the middle of it).
+    /// Tried and rejected: going on by the closest triangles after the walk, or around the corner next to a foot on the rim (slow motion of
+    /// a cape trembled as before, as much was left inside), and keeping deep vertices on one side of a thin leg, told by the first seed's
+    /// normal, the cloth's own or its neighbours' pushes (no steadier: cloth that a leg passes through must change sides somewhere).
     #[inline(always)]
     fn search(&self, point: Vec3, seeds: &[u32]) -> (f32, Vec3) {
         let place = self.walk(point, seeds);
