@@ -1,5 +1,6 @@
 //! Checkpoints: parameters, moments, the best parameters and the learning curve. Training resumed from one goes on as if it had not been interrupted.
 
+use super::smooth::STEPS;
 use super::{Row, Trainer};
 use crate::dataset::{tensors, write};
 use crate::{Error, Result};
@@ -58,6 +59,6 @@ impl Trainer {
 
     /// What two trainings must have in common to go on as one, and by which their models are the same.
     pub fn key(&self) -> String {
-        format!("{:?} start {:016x} data {:016x}", self.settings, self.start, self.data)
+        format!("{:?} smooth {STEPS} start {:016x} data {:016x}", self.settings, self.start, self.data)
     }
 }
