@@ -89,6 +89,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         (End::Diverged(error), None) => Err(error.into()),
         (_, None) => Err(anyhow!("no epoch was trained: wanted at least one")),
         (end, Some((best, mut model))) => {
+            let silent = train::is_mesh_silent(&model, &slices.validation)?;
             model.body = Some(body);
             // What diverged is to be tried again.
             let key = Some(key).filter(|_| !matches!(end, End::Diverged(_)));
@@ -96,6 +97,9 @@ pub fn run(arguments: &Arguments) -> Result<()> {
             dataset::write(&arguments.output, &bytes)?;
             std::fs::remove_file(&files.checkpoint).ok();
             println!("{name}: {} bytes, of epoch {}: {}", bytes.len(), best.epoch, errors(&best));
+            if silent {
+                println!("its mesh stream died in training and adds nothing: try another --seed, or --without mesh");
+            }
             match end {
                 End::Diverged(error) => {
                     Err(error).context(format!("{name} is of the best epoch before, {}", best.epoch))

@@ -34,7 +34,7 @@ pub use slice::{Slices, slices};
 use smooth::Smoother;
 use std::time::{Duration, Instant};
 use tape::{Id, Lane, Shared, Tape};
-pub use variant::{Part, Variant};
+pub use variant::{Part, Variant, is_mesh_silent};
 
 /// Shares a batch is dealt in.
 const SHARES: usize = 4;

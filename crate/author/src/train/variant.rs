@@ -1,7 +1,11 @@
 //! What of the network an ablation leaves out. Paper § Ablation Experiments.
 
 use super::Architecture;
+use crate::Result;
+use crate::dataset::Sample;
+use ctsn_core::cpu::Level;
 use ctsn_core::model::HostModel;
+use ctsn_core::{Predictor, Streams};
 
 /// A part of the network that an ablation leaves out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -61,4 +65,17 @@ impl Variant {
         }
         architecture
     }
+}
+
+/// Whether the mesh stream of a trained model says nothing in all of these poses: once its last ReLUs are dead, no gradient wakes it again.
+/// (It happened with a cape, one seed of two.)
+pub fn is_mesh_silent(model: &HostModel, samples: &[&Sample]) -> Result<bool> {
+    let mut predictor = Predictor::from_model(HostModel { body: None, ..model.clone() }, Level::new());
+    for sample in samples {
+        predictor.predict_row_major(&sample.joints, Streams::Both)?;
+        if predictor.activations().mesh.iter().any(|number| *number != 0.0) {
+            return Ok(false);
+        }
+    }
+    Ok(model.mesh_stream)
 }

@@ -25,6 +25,19 @@ fn bytes(trainer: &Trainer) -> Vec<u8> {
 }
 
 #[test]
+fn a_dead_mesh_stream_is_noticed() {
+    let (_, setup, samples) = tiny();
+    let samples: Vec<&Sample> = samples.iter().collect();
+    let architecture = Architecture { embedding: 8, basis: 16, layers: 2, heads: 2, features: 8 };
+    let mut model = initial(&setup, &samples, architecture, 1).unwrap();
+    assert!(!is_mesh_silent(&model, &samples).unwrap());
+    model.vertex.last_mut().unwrap().bias.fill(-1e3);
+    assert!(is_mesh_silent(&model, &samples).unwrap());
+    Variant::without(&[Part::Mesh]).silence(&mut model);
+    assert!(!is_mesh_silent(&model, &samples).unwrap(), "left out is not dead");
+}
+
+#[test]
 fn an_interruption_and_a_second_run_give_the_same_bytes() {
     let settings = Settings { epochs: 8, batch: 2, ..Settings::default() };
     let folder = tempfile::tempdir().unwrap();
