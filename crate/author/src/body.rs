@@ -4,12 +4,12 @@
 use crate::Result;
 use crate::dataset::{Sample, Setup};
 use crate::garment::apart;
-use crate::rig::{Character, Mesh, pose, vertices};
+use crate::rig::{Character, Mesh, Pose, pose, vertices};
 use crate::simulate::{covering, felt, hull, to_body_frame};
 use ctsn_core::cpu::collide::LANDMARKS;
 use ctsn_core::model::{Body, Fans, Skin};
 use ctsn_core::topology::Graph;
-use glam::{DAffine3, DVec3};
+use glam::DVec3;
 use kiddo::{ImmutableKdTree, SquaredEuclidean};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -35,11 +35,10 @@ const MISSED: f64 = 0.004;
 /// The body for the cloth of `setup`, as `samples` wear it.
 pub fn body(setup: &Setup, samples: &[&Sample]) -> Result<Body<Vec<f32>, Vec<u32>>> {
     let character = setup.character()?;
-    let cloth = Mesh { positions: vertices(&setup.template), triangles: setup.triangles.as_chunks::<3>().0.to_vec() };
     // What the simulated cloth did not feel is in its way nowhere: a figure's hands sank into its skirt, and trembled there.
-    let felt = felt(&character, &cloth)?;
+    let felt = felt(&character, &setup.cloth())?;
     let every = |count: usize| samples.iter().step_by(samples.len().div_ceil(count).max(1));
-    let bent: Vec<_> = every(BENT).map(|sample| skinning(&character, sample)).collect();
+    let bent: Vec<_> = every(BENT).map(|sample| character.skinning(&framed(&character, sample))).collect();
     let skin = hull(&character, &apart(&character), VERTICES)?;
     let mut skin = covering(skin, &character, &bent).part(|joint| felt[joint]);
     let poses: Vec<&&Sample> = every(POSES).collect();
@@ -67,7 +66,7 @@ fn tear(skin: &mut Character, poses: &[&&Sample]) {
     };
     let rest = lengths(&skin.body.positions);
     let whole = |sample: &&&Sample| -> Vec<bool> {
-        let posed = lengths(&skin.pose_body(&to_body_frame(skin, &pose(&sample.joints))));
+        let posed = lengths(&skin.pose_body(&framed(skin, sample)));
         posed.iter().zip(&rest).map(|(posed, rest)| *posed < TORN * rest).collect()
     };
     let all = |a: Vec<bool>, b: Vec<bool>| a.iter().zip(&b).map(|(a, b)| *a && *b).collect();
@@ -76,14 +75,14 @@ fn tear(skin: &mut Character, poses: &[&&Sample]) {
     skin.body.triangles.retain(|_| whole.next() == Some(&true));
 }
 
-/// `N·A_j` per joint.
-fn skinning(character: &Character, sample: &Sample) -> Vec<DAffine3> {
-    character.skinning(&to_body_frame(character, &pose(&sample.joints)))
+/// The pose of a sample in its body frame.
+fn framed(character: &Character, sample: &Sample) -> Pose {
+    to_body_frame(character, &pose(&sample.joints))
 }
 
 /// The skin vertex closest to each cloth vertex of a pose.
 fn nearest(skin: &Character, sample: &Sample) -> Result<Vec<Option<u32>>> {
-    let posed = skin.pose_body(&to_body_frame(skin, &pose(&sample.joints)));
+    let posed = skin.pose_body(&framed(skin, sample));
     let points: Vec<[f64; 3]> = posed.iter().map(|point| point.to_array()).collect();
     let tree: ImmutableKdTree<f64, 3> = ImmutableKdTree::new_from_slice(&points)
         .map_err(|error| crate::Error::Character(format!("nearest-vertex search: {error:?}")))?;
@@ -128,7 +127,7 @@ fn missed(
     sample: &Sample,
     seen: &[Option<u32>],
 ) -> Vec<Option<u32>> {
-    let posed = skin.pose_body(&to_body_frame(skin, &pose(&sample.joints)));
+    let posed = skin.pose_body(&framed(skin, sample));
     let find = |((vertex, seeds), seen): ((DVec3, &[u32; SEEDS]), &Option<u32>)| {
         let distance = |place: u32| posed[place as usize].distance(vertex);
         let nearest = |places: &[u32], best: u32| {

@@ -119,6 +119,11 @@ fn to_json<T: Serialize>(value: &T) -> Result<String> {
 }
 
 impl Setup {
+    /// The garment at rest on the canonical body.
+    pub fn cloth(&self) -> Mesh {
+        Mesh { positions: rig::vertices(&self.template), triangles: self.triangles.as_chunks::<3>().0.to_vec() }
+    }
+
     /// Writes the setup of dataset `folder`.
     pub fn write(&self, folder: &Path) -> Result<()> {
         let joints = self.description.joints.len();

@@ -2,7 +2,7 @@
 
 use super::errors::Errors;
 use crate::dataset::{Dataset, Sample, Setup};
-use crate::rig::{self, Character, Mesh, Pose, vertices};
+use crate::rig::{self, Character, Pose, vertices};
 use crate::simulate::{BodyDistance, body_frame};
 use crate::{Error, Result};
 use ctsn_core::cpu::normals::normals;
@@ -177,6 +177,5 @@ fn vertex_normals(positions: &[DVec3], triangles: &[u32]) -> Vec<DVec3> {
 
 /// The dataset's own body around its cloth, so that nothing but the dataset is needed to judge what touches it.
 pub fn body_distance(setup: &Setup) -> Result<BodyDistance> {
-    let cloth = Mesh { positions: vertices(&setup.template), triangles: setup.triangles.as_chunks::<3>().0.to_vec() };
-    BodyDistance::new(&setup.character()?, &cloth)
+    BodyDistance::new(&setup.character()?, &setup.cloth())
 }
