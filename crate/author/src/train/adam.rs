@@ -12,6 +12,9 @@ const CHUNK: usize = 4096;
 const BETA1: f32 = 0.9;
 const BETA2: f32 = 0.999;
 const EPSILON: f32 = 1e-8;
+/// Share of the training in which the learning rate rises to its full value. Validation errors with and without: a cape 10.6 and 11.1 mm, a
+/// robe 11.9 and 12.0, a T-shirt 7.8 and 7.8, a skirt, two seeds, 9.6, 10.7 and 9.5, 10.6.
+const WARM_UP: f32 = 0.05;
 
 /// First and second moments of one parameter array.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -48,7 +51,8 @@ impl Moments {
     }
 }
 
-/// Learning rate at `progress` in [0, 1]: cosine from `rate` down to 1 % of it.
+/// Learning rate at `progress` in [0, 1]: cosine from `rate` down to 1 % of it, reached from nearly nought within [`WARM_UP`].
 pub fn cosine(rate: f32, progress: f32) -> f32 {
-    rate * (0.01 + 0.99 * 0.5 * (1.0 + (std::f32::consts::PI * progress.clamp(0.0, 1.0)).cos()))
+    let warm = (progress / WARM_UP).clamp(0.02, 1.0);
+    rate * warm * (0.01 + 0.99 * 0.5 * (1.0 + (std::f32::consts::PI * progress.clamp(0.0, 1.0)).cos()))
 }
