@@ -1,71 +1,17 @@
 // How far cloth vertices must move to lie outside the posed body. The closest body point is searched by walking over the body's
 // surface from a few seeds. Twin: crate/core/src/cpu/collide.rs
 
-struct Params {
-    vertices: u32,
-    // Seeds per vertex.
-    seeds: u32,
-    steps: u32,
-    gap: f32,
-    depth: f32,
-    steepest: f32,
-    sliver: f32,
-    folded: f32,
-    // The body's first vertices, spread evenly over it.
-    landmarks: u32,
-    free: f32,
-}
-
-@group(0) @binding(0) var<uniform> params: Params;
-// Posed body: positions and unit normals [b, 3].
-@group(0) @binding(1) var<storage, read> body: array<f32>;
-@group(0) @binding(2) var<storage, read> body_normals: array<f32>;
-// First triangle around each body vertex [b + 1], and the other two corners of each.
-@group(0) @binding(3) var<storage, read> offsets: array<u32>;
-@group(0) @binding(4) var<storage, read> fans: array<vec2<u32>>;
-// [seeds, n]
-@group(0) @binding(5) var<storage, read> seeds_of: array<u32>;
 // [n, 3]
 @group(0) @binding(6) var<storage, read> positions: array<f32>;
 @group(0) @binding(7) var<storage, read_write> push: array<f32>;
 
-fn position(vertex: u32) -> vec3<f32> {
-    return vec3(body[3u * vertex], body[3u * vertex + 1u], body[3u * vertex + 2u]);
-}
-
-fn normal(vertex: u32) -> vec3<f32> {
-    return vec3(body_normals[3u * vertex], body_normals[3u * vertex + 1u], body_normals[3u * vertex + 2u]);
-}
-
-// The displacement to the gap, and the squared distance to the body around a place.
-fn push_from(point: vec3<f32>, place: Place) -> vec4<f32> {
-    let vertex = place.vertex;
-    if (dot(point - position(vertex), normal(vertex)) - place.top > params.gap) {
-        return vec4(0.0, 0.0, 0.0, place.squared);
+// The nearest landmark and its squared distance.
+fn nearest_landmark(point: vec3<f32>) -> Place {
+    var best = Place(0u, 3.4e38);
+    for (var vertex = 0u; vertex < params.landmarks; vertex++) {
+        best = closer(best, vertex, point);
     }
-    let a = position(vertex);
-    var best = vec3(3.4e38, 0.0, 0.0);
-    var foot = vec3(0.0);
-    var corners = vec2(vertex);
-    for (var k = offsets[vertex]; k < offsets[vertex + 1u]; k++) {
-        let ab = position(fans[k].x) - a;
-        let ac = position(fans[k].y) - a;
-        let spot = closest(point - a, ab, ac);
-        if (spot.x < best.x) {
-            best = spot;
-            foot = a + ab * spot.y + ac * spot.z;
-            corners = fans[k];
-        }
-    }
-    let steep = normal(vertex) * (1.0 - best.y - best.z) + normal(corners.x) * best.y + normal(corners.y) * best.z;
-    let least = squared(point - foot);
-    let length = sqrt(squared(steep));
-    let up = steep / max(length, 1e-30);
-    let along_up = dot(point - foot, up);
-    let beside = least > params.gap * params.gap && abs(along_up) < params.steepest * sqrt(least);
-    let found = best.x < 3.4e38 && length > params.folded && !beside && along_up >= -params.depth;
-    let height = select(along_up, sqrt(least), along_up > 0.0);
-    return select(vec4(0.0, 0.0, 0.0, 3.4e38), vec4(up * max(params.gap - height, 0.0), least), found);
+    return best;
 }
 
 @compute @workgroup_size(64)
@@ -75,18 +21,20 @@ fn collide(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let point = vec3(positions[3u * i], positions[3u * i + 1u], positions[3u * i + 2u]);
-    let own = max(params.seeds - 1u, 1u);
-    var by = push_from(point, from_seeds(i, point, 0u, own));
-    let last = (params.seeds - 1u) * params.vertices + i;
-    // The last seed lies on another part of the body, where the cloth comes near one: the nearer part decides.
-    if (seeds_of[last] != seeds_of[i]) {
-        let second = push_from(point, from_seeds(i, point, own, params.seeds));
-        by = select(by, second, second.w < by.w);
+    var by = around(point, walk(point, nearest_own(i, point)));
+    let other = other_seed(i);
+    var start = closer(Place(other, 3.4e38), other, point);
+    // Where the cloth comes near another part of the body than its own, the nearer part decides. So it does where cloth hangs free.
+    let free = by.w > params.free * params.free;
+    if (free) {
+        let landmark = nearest_landmark(point);
+        if (landmark.squared < start.squared) {
+            start = landmark;
+        }
     }
-    // So it does where cloth hangs free of its own places.
-    if (by.w > params.free * params.free) {
-        let third = push_from(point, from_landmarks(point));
-        by = select(by, third, third.w < by.w);
+    if (free || (other != seeds_of[i] && !is_elsewhere(start.squared, by.w))) {
+        let second = around(point, walk(point, start));
+        by = select(by, second, second.w < by.w);
     }
     push[3u * i] = by.x;
     push[3u * i + 1u] = by.y;

@@ -1,7 +1,7 @@
 //! The network's operations in WGSL, one per file, each the twin of the file of the same name in `crate/core/src/cpu`.
 //! This table says what the host must know of each: text, bindings, and `Params`, whose WGSL a test compares with the Rust.
 //!
-//! `NAME.VARIANT.wgsl` computes what `NAME.wgsl` does, for operands or adapters of a special kind; `NAME.edge.wgsl` is a part of both. Rows that are read as vec4 are padded
+//! `NAME.VARIANT.wgsl` computes what `NAME.wgsl` does, for operands or adapters of a special kind; `NAME.edge.wgsl` is a part of both, and so are the parts of `collide` and `settle`. Rows that are read as vec4 are padded
 //! with zeros to whole vec4; [n, 3] is not padded, so that it can be a vertex attribute as it is.
 
 /// How a shader uses a storage buffer.
@@ -78,7 +78,7 @@ params! {
     Blend { numbers: u32, count: u32, stride: u32 }
     /// `Params` of body_frame.wgsl.
     BodyFrame { joints: u32, root: u32, yaw: u32 }
-    /// `Params` of collide.wgsl.
+    /// `Params` of collide.wgsl and settle.wgsl.
     Collide {
         vertices: u32,
         seeds: u32,
@@ -89,12 +89,12 @@ params! {
         sliver: f32,
         folded: f32,
         landmarks: u32,
-        free: f32
+        free: f32,
+        elsewhere: f32,
+        again: f32
     }
     /// `Params` of features.wgsl.
     Features { mean: [f32; 3], edge_scale: f32, deviation: [f32; 3], vertices: u32 }
-    /// `Params` of lift.wgsl.
-    Lift { numbers: u32 }
     /// `Params` of linear.wgsl and linear.row.wgsl.
     Linear { rows: u32, inputs: u32, outputs: u32, relu: u32 }
     /// `Params` of normals.wgsl.
@@ -135,17 +135,17 @@ shaders! {
     /// Joints, inverse bind, standard -> transforms, pose vector.
     BODY_FRAME: BodyFrame, "body_frame" + [], [Read Read Read Write Write], [64, 1];
     /// Body, its normals, offsets, fans, seeds, positions -> push.
-    COLLIDE: Collide, "collide" + ["collide.walk", "collide.triangle"], [Read Read Read Read Read Read Write], [64, 1];
+    COLLIDE: Collide, "collide" + ["collide.foot", "collide.walk", "collide.triangle"], [Read Read Read Read Read Read Write], [64, 1];
     /// V, T_C -> nodes, potentials.
     FEATURES: Features, "features" + [], [Read Read Write Write], [64, 1];
-    /// Displacement -> positions.
-    LIFT: Lift, "lift" + [], [Read Write], [64, 1];
     /// x, weight, bias -> y.
     LINEAR: Linear, "linear" + [], [Read Read Read Write], [16, 32];
     /// The same for a single row.
     LINEAR_ROW: Linear, "linear.row" + [], [Read Read Read Write], [8, 1];
     /// Positions, offsets, corners -> normals.
     NORMALS: Normals, "normals" + [], [Read Read Read Write], [64, 1];
+    /// Body, its normals, offsets, fans, seeds, displacement -> positions.
+    SETTLE: Collide, "settle" + ["collide.foot", "collide.walk", "collide.triangle"], [Read Read Read Read Read Read Write], [64, 1];
     /// Rest, joints, weights, transforms -> positions.
     SKIN: Skin, "skin" + [], [Read Read Read Read Write], [64, 1];
     /// Offsets, neighbours, push, before -> after.

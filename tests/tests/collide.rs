@@ -2,7 +2,7 @@
 
 use ctsn_core::cpu::{
     Level,
-    collide::{DEPTH, GAP},
+    closest::{DEPTH, GAP},
 };
 use ctsn_core::model::{Body, Fans, HostModel, Skin};
 use ctsn_core::topology::Graph;
@@ -193,6 +193,35 @@ fn neighbours_follow() {
     assert_eq!(found[9..], places[9..]);
 }
 
+/// One sphere above another; the first cloth vertex is deep in the lower one and leaves it upwards, the second is its neighbour,
+/// just below the upper one.
+fn dragged(rng: &mut Rng) -> HostModel {
+    let (lower, faces) = sphere();
+    let count = (lower.len() / 3) as u32;
+    let upper: Vec<f32> = lower.chunks_exact(3).flat_map(|p| [p[0], p[1] + UPPER, p[2]]).collect();
+    let triangles = [faces.clone(), faces.iter().map(|i| i + count).collect()].concat();
+    // Beside the axis: on it, every way out is as good as the others.
+    let places = vec![0.004, 0.025, 0.003, 0.004, UPPER - RADIUS - 0.005, 0.003];
+    let mut model = model(rng, places, [lower, upper].concat(), triangles);
+    model.graph = Graph::new(2, &[0, 1, 1]);
+    // The top of the lower sphere, the bottom of the upper one.
+    model.body.as_mut().expect("a body").seeds = [[0; 4], [count + 1; 4]].concat();
+    model
+}
+
+/// Middle of the upper sphere, metres.
+const UPPER: f32 = 0.14;
+
+#[test]
+fn what_neighbours_drag_into_the_body_comes_out() {
+    let model = dragged(&mut Rng::with_seed(11));
+    let found = predict(&model);
+    let dragged = model.rest[4] + 0.7 * (found[1] - model.rest[1]);
+    assert!(found[1] > RADIUS, "the first stays inside: {found:?}");
+    assert!(dragged > UPPER - RADIUS + 0.01, "nothing drags the second inside: {found:?}");
+    assert!(length(&[found[3], found[4] - UPPER, found[5]]) > 0.98 * RADIUS, "the second stays inside: {found:?}");
+}
+
 #[cfg(not(target_arch = "wasm32"))]
 fn gpu() -> ctsn_gpu::Gpu {
     pollster::block_on(ctsn_gpu::Gpu::new()).expect("a Vulkan adapter (Debian: mesa-vulkan-drivers)")
@@ -211,9 +240,11 @@ fn on_gpu(gpu: &ctsn_gpu::Gpu, model: &HostModel) -> Vec<f32> {
 #[cfg(not(target_arch = "wasm32"))]
 #[test]
 fn the_gpu_finds_what_cloth_never_met() {
-    let model = two_spheres(&mut Rng::with_seed(10));
-    let difference = predict(&model).iter().zip(on_gpu(&gpu(), &model)).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
-    assert!(difference <= 1e-4, "{difference}");
+    for model in [two_spheres(&mut Rng::with_seed(10)), dragged(&mut Rng::with_seed(12))] {
+        let found = on_gpu(&gpu(), &model);
+        let difference = predict(&model).iter().zip(found).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+        assert!(difference <= 1e-4, "{difference}");
+    }
 }
 
 #[cfg(not(target_arch = "wasm32"))]

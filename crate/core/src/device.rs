@@ -110,8 +110,16 @@ pub trait Device {
         before: &Self::Buffer,
         after: &mut Self::Buffer,
     );
-    /// displacement [n, 3] is added to positions [n, 3].
-    fn lift(&mut self, displacement: &Self::Buffer, positions: &mut Self::Buffer);
+    /// The body's posed positions and normals [b, 3]; displacement [n, 3] is added to positions [n, 3], and what it carried into another
+    /// part of the body is brought to the gap.
+    fn settle(
+        &mut self,
+        body: &Body<Self::Buffer, Self::Indices>,
+        posed: &Self::Buffer,
+        normals: &Self::Buffer,
+        displacement: &Self::Buffer,
+        positions: &mut Self::Buffer,
+    );
     /// Drawn vertex -> cloth vertex [d], positions and normals [n, 3] -> those of the drawn vertices [d, 3].
     fn surface(
         &mut self,

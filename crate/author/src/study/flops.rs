@@ -89,7 +89,7 @@ impl Device for Count {
 
     fn spread(&mut self, _: &Graph<usize>, _: &usize, _: &usize, _: &mut usize) {}
 
-    fn lift(&mut self, _: &usize, _: &mut usize) {}
+    fn settle(&mut self, _: &Body<usize, usize>, _: &usize, _: &usize, _: &usize, _: &mut usize) {}
 
     fn surface(&mut self, _: &[u32], _: &usize, _: &usize, _: &mut Drawn<usize>) {}
 }

@@ -266,7 +266,7 @@ impl Device for Tape {
 
     fn spread(&mut self, _graph: &Graph<IndexId>, _push: &Id, _before: &Id, _after: &mut Id) {}
 
-    fn lift(&mut self, _displacement: &Id, _positions: &mut Id) {}
+    fn settle(&mut self, _: &Body<Id, IndexId>, _posed: &Id, _normals: &Id, _displacement: &Id, _positions: &mut Id) {}
 
     fn surface(&mut self, _vertex: &[u32], _positions: &Id, _normals: &Id, _drawn: &mut Drawn<Id>) {
         // Nor is this.

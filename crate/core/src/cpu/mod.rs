@@ -4,13 +4,15 @@
 pub mod attend;
 pub mod blend;
 pub mod body_frame;
+pub mod closest;
 pub mod collide;
+pub mod eight;
 pub mod exp;
 pub mod features;
 pub mod gate;
-pub mod lift;
 pub mod linear;
 pub mod normals;
+pub mod settle;
 pub mod skin;
 pub mod spread;
 pub mod surface;
@@ -27,6 +29,7 @@ pub use fearless_simd::Level;
 pub struct Cpu {
     level: Level,
     scratch: attend::Scratch,
+    rings: closest::Rings,
 }
 
 impl Cpu {
@@ -37,7 +40,7 @@ impl Cpu {
 
     /// A chosen level.
     pub fn with_level(level: Level) -> Self {
-        Self { level, scratch: attend::Scratch::default() }
+        Self { level, scratch: attend::Scratch::default(), rings: closest::Rings::default() }
     }
 }
 
@@ -131,25 +134,38 @@ impl Device for Cpu {
         positions: &Vec<f32>,
         push: &mut Vec<f32>,
     ) {
-        let posed = collide::Posed {
-            positions: posed.as_chunks().0,
-            normals: normals.as_chunks().0,
-            offsets: &body.fans.offsets,
-            fans: body.fans.corners.as_chunks().0,
-        };
-        collide::collide(self.level, positions, &posed, &body.seeds, push);
+        collide::collide(self.level, positions, &at(body, posed, normals, &mut self.rings), &body.seeds, push);
     }
 
     fn spread(&mut self, graph: &Graph<Vec<u32>>, push: &Vec<f32>, before: &Vec<f32>, after: &mut Vec<f32>) {
         spread::spread(graph, push, before, after);
     }
 
-    fn lift(&mut self, displacement: &Vec<f32>, positions: &mut Vec<f32>) {
-        lift::lift(displacement, positions);
+    fn settle(
+        &mut self,
+        body: &Body<Vec<f32>, Vec<u32>>,
+        posed: &Vec<f32>,
+        normals: &Vec<f32>,
+        displacement: &Vec<f32>,
+        positions: &mut Vec<f32>,
+    ) {
+        settle::settle(self.level, displacement, &at(body, posed, normals, &mut self.rings), &body.seeds, positions);
     }
 
     fn surface(&mut self, vertex: &[u32], positions: &Vec<f32>, normals: &Vec<f32>, drawn: &mut Drawn<Vec<f32>>) {
         surface::surface(vertex, positions, &mut drawn.positions);
         surface::surface(vertex, normals, &mut drawn.normals);
     }
+}
+
+/// The body where it is posed.
+fn at<'a>(
+    body: &'a Body<Vec<f32>, Vec<u32>>,
+    positions: &'a [f32],
+    normals: &'a [f32],
+    rings: &'a mut closest::Rings,
+) -> closest::Posed<'a> {
+    let (positions, offsets, fans) = (positions.as_chunks().0, &body.fans.offsets, body.fans.corners.as_chunks().0);
+    rings.pose(positions, offsets, fans);
+    closest::Posed { positions, normals: normals.as_chunks().0, offsets, fans, rings }
 }

@@ -34,5 +34,5 @@ pub(super) fn collide<D: Device>(device: &mut D, model: &DeviceModel<D>, a: &mut
     let [first, second] = &mut c.displacement;
     device.spread(&model.graph, &c.push, &c.push, first);
     device.spread(&model.graph, &c.push, first, second);
-    device.lift(second, &mut a.positions);
+    device.settle(body, &c.body, &c.normals, second, &mut a.positions);
 }

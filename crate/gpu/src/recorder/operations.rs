@@ -2,13 +2,13 @@
 
 use super::{Id, IndexId, Recorder, Slot};
 use crate::pack::{self, whole};
-use ctsn_core::cpu::{collide, spread};
+use ctsn_core::cpu::{closest, collide, eight, settle, spread};
 use ctsn_core::device::{Activation, Device, Space};
 use ctsn_core::model::{Body, Layer, Linear, Reference, Sizes, Skin};
 use ctsn_core::network::Drawn;
 use ctsn_core::pose::{Frame, Rig};
 use ctsn_core::topology::Graph;
-use ctsn_shaders as shaders;
+use ctsn_shaders::{self as shaders, Shader};
 use std::borrow::Cow;
 
 /// The largest power of two that is not above `number`.
@@ -173,32 +173,8 @@ impl Device for Recorder<'_> {
     }
 
     fn collide(&mut self, body: &Body<Id, IndexId>, posed: &Id, normals: &Id, positions: &Id, push: &mut Id) {
-        let n = self.length(*positions) / 3;
-        let (offsets, corners, seeds) = (body.fans.offsets.0, body.fans.corners.0, body.seeds.0);
-        let width = self.indices[seeds].len() / n;
-        let operands = [
-            self.input(*posed),
-            self.input(*normals),
-            self.pack(("fan offsets", offsets), |this| this.indices[offsets].to_vec()),
-            self.pack(("fan corners", corners), |this| this.indices[corners].to_vec()),
-            self.pack(("seeds", seeds), |this| pack::slots(&this.indices[seeds], width)),
-            self.input(*positions),
-            self.output(*push, 3, 3),
-        ];
-        let params = shaders::Collide {
-            vertices: n as u32,
-            seeds: width as u32,
-            steps: collide::STEPS as u32,
-            gap: collide::GAP,
-            depth: collide::DEPTH,
-            steepest: collide::STEEPEST,
-            sliver: collide::SLIVER,
-            folded: collide::FOLDED,
-            landmarks: collide::LANDMARKS.min(body.vertices) as u32,
-            free: collide::FREE,
-        };
         // A walk of about two steps, six triangles around each vertex.
-        self.dispatch(&shaders::COLLIDE, params, &operands, [n, 1], *push, n * (8 * (width + 12) + 6 * 60));
+        self.search(&shaders::COLLIDE, body, [*posed, *normals, *positions], *push, 6 * 60);
     }
 
     fn spread(&mut self, graph: &Graph<IndexId>, push: &Id, before: &Id, after: &mut Id) {
@@ -215,11 +191,9 @@ impl Device for Recorder<'_> {
         self.dispatch(&shaders::SPREAD, params, &operands, [n, 1], *after, flops);
     }
 
-    fn lift(&mut self, displacement: &Id, positions: &mut Id) {
-        let numbers = self.length(*positions);
-        let operands = [self.input(*displacement), self.output(*positions, 3, 3)];
-        let params = shaders::Lift { numbers: numbers as u32 };
-        self.dispatch(&shaders::LIFT, params, &operands, [numbers, 1], *displacement, numbers);
+    fn settle(&mut self, body: &Body<Id, IndexId>, posed: &Id, normals: &Id, displacement: &Id, positions: &mut Id) {
+        // One vertex in twenty or so is looked at again, by seven times as many triangles.
+        self.search(&shaders::SETTLE, body, [*posed, *normals, *displacement], *positions, 7 * 6 * 60 / 20);
     }
 
     fn surface(&mut self, vertex: &[u32], positions: &Id, normals: &Id, drawn: &mut Drawn<Id>) {
@@ -232,5 +206,40 @@ impl Device for Recorder<'_> {
         ];
         let params = shaders::Surface { drawn: vertex.len() as u32 };
         self.dispatch(&shaders::SURFACE, params, &operands, [vertex.len(), 1], drawn.positions, 0);
+    }
+}
+
+impl Recorder<'_> {
+    /// A search over the posed body: its positions, normals and a number per coordinate of the cloth -> such numbers. `flops` of each vertex
+    /// beside those of the walk.
+    fn search(&mut self, shader: &'static Shader, body: &Body<Id, IndexId>, inputs: [Id; 3], output: Id, flops: usize) {
+        let [posed, normals, cloth] = inputs;
+        let n = self.length(cloth) / 3;
+        let (offsets, corners, seeds) = (body.fans.offsets.0, body.fans.corners.0, body.seeds.0);
+        let width = self.indices[seeds].len() / n;
+        let operands = [
+            self.input(posed),
+            self.input(normals),
+            self.pack(("fan offsets", offsets), |this| this.indices[offsets].to_vec()),
+            self.pack(("fan corners", corners), |this| this.indices[corners].to_vec()),
+            self.pack(("seeds", seeds), |this| pack::slots(&this.indices[seeds], width)),
+            self.input(cloth),
+            self.output(output, 3, 3),
+        ];
+        let params = shaders::Collide {
+            vertices: n as u32,
+            seeds: width as u32,
+            steps: closest::STEPS as u32,
+            gap: closest::GAP,
+            depth: closest::DEPTH,
+            steepest: closest::STEEPEST,
+            sliver: eight::SLIVER,
+            folded: closest::FOLDED,
+            landmarks: collide::LANDMARKS.min(body.vertices) as u32,
+            free: collide::FREE,
+            elsewhere: collide::ELSEWHERE,
+            again: settle::AGAIN,
+        };
+        self.dispatch(shader, params, &operands, [n, 1], output, n * (8 * (width + 12) + flops));
     }
 }

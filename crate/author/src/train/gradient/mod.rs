@@ -38,7 +38,7 @@ pub(super) fn run(tape: &Tape, operation: &Operation, shared: &Shared, lane: &mu
         }),
         Operation::Add { rest, residual, total } => lane.write(*total, |lane, total| {
             total.copy_from_slice(lane.value(shared, *rest));
-            cpu::lift::lift(lane.value(shared, *residual), total);
+            total.iter_mut().zip(lane.value(shared, *residual)).for_each(|(total, by)| *total += by);
         }),
         Operation::Skin { rest, skin, transforms, positions } => lane.write(*positions, |lane, positions| {
             let value = |id| lane.value(shared, id);

@@ -1,0 +1,101 @@
+// The body that cloth is kept out of, and how far a point is from its gap, for collide.wgsl and settle.wgsl.
+// Twin: crate/core/src/cpu/closest.rs
+
+struct Params {
+    vertices: u32,
+    // Seeds per vertex.
+    seeds: u32,
+    steps: u32,
+    gap: f32,
+    depth: f32,
+    steepest: f32,
+    sliver: f32,
+    folded: f32,
+    // The body's first vertices, spread evenly over it.
+    landmarks: u32,
+    free: f32,
+    elsewhere: f32,
+    again: f32,
+}
+
+@group(0) @binding(0) var<uniform> params: Params;
+// Posed body: positions and unit normals [b, 3].
+@group(0) @binding(1) var<storage, read> body: array<f32>;
+@group(0) @binding(2) var<storage, read> body_normals: array<f32>;
+// First triangle around each body vertex [b + 1], and the other two corners of each.
+@group(0) @binding(3) var<storage, read> offsets: array<u32>;
+@group(0) @binding(4) var<storage, read> fans: array<vec2<u32>>;
+// [seeds, n]
+@group(0) @binding(5) var<storage, read> seeds_of: array<u32>;
+
+fn position(vertex: u32) -> vec3<f32> {
+    return vec3(body[3u * vertex], body[3u * vertex + 1u], body[3u * vertex + 2u]);
+}
+
+fn normal(vertex: u32) -> vec3<f32> {
+    return vec3(body_normals[3u * vertex], body_normals[3u * vertex + 1u], body_normals[3u * vertex + 2u]);
+}
+
+// The last seed of cloth vertex i: on another part of the body, the first again where there is none.
+fn other_seed(i: u32) -> u32 {
+    return seeds_of[(params.seeds - 1u) * params.vertices + i];
+}
+
+// Whether a place is too far away to lead to a part nearer than what was found: squared distances.
+fn is_elsewhere(place: f32, found: f32) -> bool {
+    let bound = sqrt(found) + params.elsewhere;
+    return place > bound * bound;
+}
+
+// The displacement to the gap, and the squared distance to the body around the end of a walk: room above all the triangles there.
+fn around(point: vec3<f32>, place: Place) -> vec4<f32> {
+    let at = position(place.vertex);
+    let up = normal(place.vertex);
+    var top = 0.0;
+    for (var k = offsets[place.vertex]; k < offsets[place.vertex + 1u]; k++) {
+        top = max(top, dot(position(fans[k].x) - at, up));
+    }
+    if (dot(point - at, up) - params.gap > top) {
+        return vec4(0.0, 0.0, 0.0, place.squared);
+    }
+    return widely(point, place.vertex);
+}
+
+// The closest of the triangles around a vertex; where the point is beside them, of those around its neighbours.
+fn widely(point: vec3<f32>, vertex: u32) -> vec4<f32> {
+    var found = foot_at(point, vertex);
+    if (found.w == 3.4e38) {
+        for (var k = offsets[vertex]; k < offsets[vertex + 1u]; k++) {
+            let next = foot_at(point, fans[k].x);
+            found = select(found, next, next.w < found.w);
+        }
+    }
+    return found;
+}
+
+// The same for the closest of the triangles around a vertex alone.
+fn foot_at(point: vec3<f32>, vertex: u32) -> vec4<f32> {
+    let a = position(vertex);
+    var best = vec3(3.4e38, 0.0, 0.0);
+    var foot = vec3(0.0);
+    var corners = vec2(vertex);
+    for (var k = offsets[vertex]; k < offsets[vertex + 1u]; k++) {
+        let ab = position(fans[k].x) - a;
+        let ac = position(fans[k].y) - a;
+        let spot = closest(point - a, ab, ac);
+        if (spot.x < best.x) {
+            best = spot;
+            foot = a + ab * spot.y + ac * spot.z;
+            corners = fans[k];
+        }
+    }
+    let steep = normal(vertex) * (1.0 - best.y - best.z) + normal(corners.x) * best.y + normal(corners.y) * best.z;
+    let least = squared(point - foot);
+    let length = sqrt(squared(steep));
+    let up = steep / max(length, 1e-30);
+    let along_up = dot(point - foot, up);
+    let beside = least > params.gap * params.gap && abs(along_up) < params.steepest * sqrt(least);
+    let found = best.x < 3.4e38 && length > params.folded && !beside && along_up >= -params.depth;
+    let height = select(along_up, sqrt(least), along_up > 0.0);
+    return select(vec4(0.0, 0.0, 0.0, 3.4e38), vec4(up * max(params.gap - height, 0.0), least), found);
+}
