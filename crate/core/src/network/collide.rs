@@ -26,7 +26,7 @@ impl<B> Collision<B> {
 }
 
 /// Moves the predicted positions; nothing happens where the model has no body.
-pub(super) fn collide<D: Device>(device: &mut D, model: &DeviceModel<D>, a: &mut Activations<D::Buffer>) {
+pub fn collide<D: Device>(device: &mut D, model: &DeviceModel<D>, a: &mut Activations<D::Buffer>) {
     let (Some(body), Some(c)) = (&model.body, &mut a.collision) else { return };
     device.skin(&body.rest, &body.skin, &a.body_frame, Space::World, &mut c.body);
     device.normals(&c.body, &body.triangles, &mut c.normals);

@@ -6,7 +6,7 @@ mod graph;
 
 use crate::device::{Device, Space};
 use crate::model::Model;
-pub use collide::Collision;
+pub use collide::{Collision, collide};
 
 /// Which part of the network runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -132,7 +132,7 @@ pub fn frame<D: Device>(device: &mut D, model: &DeviceModel<D>, streams: Streams
     device.body_frame(&model.rig, &a.joints, &mut a.body_frame, &mut a.pose);
     forward(device, model, streams, Space::World, a);
     if streams == Streams::Both {
-        collide::collide(device, model, a);
+        collide(device, model, a);
     }
     device.normals(&a.positions, &model.triangles, &mut a.normals);
     if let (Some(surface), Some(drawn)) = (&model.surface, &mut a.drawn) {
