@@ -8,7 +8,7 @@ use glam::Vec3;
 pub const FOLLOW: f32 = 0.7;
 /// The most of a neighbour's displacement that counts, metres: where a thin leg passes through a cape, single vertices come out now on this
 /// side, now on that, and threw all around them to and fro. (Slow motion of three capes trembled by 5.1 to 6.0 % more, with 10 mm by 4.7 to
-/// 5.6; with 6 mm by 4.5 to 5.2, but then an arm shows between the vertices of a sleeve.)
+/// 5.6; with 6 mm by 4.5 to 5.2, but then a thumb shows between the vertices of a sleeve.)
 pub const FURTHEST: f32 = 1e-2;
 
 /// push [n, 3] (what each vertex needs at least), before [n, 3] -> after [n, 3].
