@@ -102,7 +102,7 @@ params! {
     /// `Params` of skin.wgsl.
     Skin { vertices: u32, width: u32, back: u32, world: u32 }
     /// `Params` of spread.wgsl.
-    Spread { vertices: u32, follow: f32, furthest: f32 }
+    Spread { vertices: u32, follow: f32 }
     /// `Params` of surface.wgsl.
     Surface { drawn: u32 }
 }

@@ -4,7 +4,6 @@
 struct Params {
     vertices: u32,
     follow: f32,
-    furthest: f32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
@@ -26,8 +25,7 @@ fn spread(@builtin(global_invocation_id) id: vec3<u32>) {
     var sum = vec3(0.0);
     for (var k = offsets[i]; k < offsets[i + 1u]; k++) {
         let j = 3u * neighbours[k];
-        let by = vec3(before[j], before[j + 1u], before[j + 2u]);
-        sum += by * min(params.furthest / max(length(by), 1e-30), 1.0);
+        sum += vec3(before[j], before[j + 1u], before[j + 2u]);
     }
     let mean = sum * (params.follow / f32(max(offsets[i + 1u] - offsets[i], 1u)));
     let needed = vec3(push[3u * i], push[3u * i + 1u], push[3u * i + 2u]);

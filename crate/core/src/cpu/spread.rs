@@ -6,18 +6,13 @@ use glam::Vec3;
 
 /// Share of its neighbours' mean displacement that a vertex takes over in a round.
 pub const FOLLOW: f32 = 0.7;
-/// The most of a neighbour's displacement that counts, metres: where a thin leg passes through a cape, single vertices come out now on this
-/// side, now on that, and threw all around them to and fro. (Slow motion of three capes trembled by 5.1 to 6.0 % more, with 10 mm by 4.7 to
-/// 5.6; with 6 mm by 4.5 to 5.2, but then a thumb shows between the vertices of a sleeve.)
-pub const FURTHEST: f32 = 1e-2;
 
 /// push [n, 3] (what each vertex needs at least), before [n, 3] -> after [n, 3].
 pub fn spread(graph: &Graph<Vec<u32>>, push: &[f32], before: &[f32], after: &mut [f32]) {
     let (push, before) = (push.as_chunks::<3>().0, before.as_chunks::<3>().0);
     for (i, after) in after.as_chunks_mut::<3>().0.iter_mut().enumerate() {
         let neighbours = graph.of(i);
-        let sum: Vec3 =
-            neighbours.iter().map(|j| Vec3::from_array(before[*j as usize]).clamp_length_max(FURTHEST)).sum();
+        let sum: Vec3 = neighbours.iter().map(|j| Vec3::from_array(before[*j as usize])).sum();
         let mean = sum * (FOLLOW / neighbours.len().max(1) as f32);
         let push = Vec3::from_array(push[i]);
         let missing = match push.length() {

@@ -187,7 +187,7 @@ impl Device for Recorder<'_> {
             self.output(*after, 3, 3),
         ];
         let flops = 3 * self.indices[graph.neighbours.0].len() + 20 * n;
-        let params = shaders::Spread { vertices: n as u32, follow: spread::FOLLOW, furthest: spread::FURTHEST };
+        let params = shaders::Spread { vertices: n as u32, follow: spread::FOLLOW };
         self.dispatch(&shaders::SPREAD, params, &operands, [n, 1], *after, flops);
     }
 
