@@ -1,5 +1,5 @@
 // The body that cloth is kept out of, and how far a point is from its gap, for collide.wgsl and settle.wgsl.
-// Twin: crate/core/src/cpu/closest.rs
+// Twins: crate/core/src/cpu/closest.rs, and collide.rs for the seeds.
 
 struct Params {
     vertices: u32,

@@ -1,4 +1,4 @@
-// The closest point of a triangle, for collide.wgsl and settle.wgsl. Twin: crate/core/src/cpu/closest.rs
+// The closest point of a triangle, for collide.wgsl and settle.wgsl. Twin: crate/core/src/cpu/eight.rs
 
 fn squared(way: vec3<f32>) -> f32 {
     return dot(way, way);

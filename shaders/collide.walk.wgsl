@@ -1,4 +1,5 @@
-// Ways over the body's surface to the vertex nearest to a point, for collide.wgsl and settle.wgsl. Twin: crate/core/src/cpu/closest.rs
+// Ways over the body's surface to the vertex nearest to a point, for collide.wgsl and settle.wgsl. Twins:
+// crate/core/src/cpu/closest.rs, and collide.rs for the seeds.
 
 // A body vertex and the squared distance to it.
 struct Place {

@@ -3,6 +3,7 @@
 use ctsn_core::cpu::{
     Level,
     closest::{DEPTH, GAP},
+    spread::FOLLOW,
 };
 use ctsn_core::model::{Body, Fans, HostModel, Skin};
 use ctsn_core::topology::Graph;
@@ -171,7 +172,8 @@ fn no_body_makes_nan() {
         #[cfg(not(target_arch = "wasm32"))]
         assert!(on_gpu(&gpu, &model).iter().all(|c| c.is_finite()), "{name}, GPU");
         let far = places.iter().zip(&found).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
-        assert!(far < DEPTH + 2.0 * GAP, "{name}: a vertex flew {far} m");
+        // Twice: by the first look and by the second.
+        assert!(far < 2.0 * (DEPTH + GAP), "{name}: a vertex flew {far} m");
     }
 }
 
@@ -193,6 +195,9 @@ fn neighbours_follow() {
     assert_eq!(found[9..], places[9..]);
 }
 
+/// Middle of the upper sphere, metres.
+const UPPER: f32 = 0.14;
+
 /// One sphere above another; the first cloth vertex is deep in the lower one and leaves it upwards, the second is its neighbour,
 /// just below the upper one.
 fn dragged(rng: &mut Rng) -> HostModel {
@@ -209,14 +214,11 @@ fn dragged(rng: &mut Rng) -> HostModel {
     model
 }
 
-/// Middle of the upper sphere, metres.
-const UPPER: f32 = 0.14;
-
 #[test]
 fn what_neighbours_drag_into_the_body_comes_out() {
     let model = dragged(&mut Rng::with_seed(11));
     let found = predict(&model);
-    let dragged = model.rest[4] + 0.7 * (found[1] - model.rest[1]);
+    let dragged = model.rest[4] + FOLLOW * (found[1] - model.rest[1]);
     assert!(found[1] > RADIUS, "the first stays inside: {found:?}");
     assert!(dragged > UPPER - RADIUS + 0.01, "nothing drags the second inside: {found:?}");
     assert!(length(&[found[3], found[4] - UPPER, found[5]]) > 0.98 * RADIUS, "the second stays inside: {found:?}");

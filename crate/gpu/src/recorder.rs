@@ -166,14 +166,14 @@ impl<'m> Recorder<'m> {
         }
     }
 
-    /// Records a dispatch over `extent` outputs by x and y; its stage is that of `output`.
+    /// Records a dispatch over `extent` outputs by x and y; its stage is that of the activation `of`.
     fn dispatch<P: Pod>(
         &mut self,
         shader: &'static Shader,
         params: P,
         operands: &[Operand],
         extent: [usize; 2],
-        output: Id,
+        of: Id,
         flops: usize,
     ) {
         let limit = u64::from(self.gpu.device().limits().max_compute_workgroups_per_dimension);
@@ -187,7 +187,7 @@ impl<'m> Recorder<'m> {
             Operand::Activation(room) => (self.rooms[*room].rows * self.rooms[*room].stride * 4) as f64,
         };
         let cost = Cost { flops: flops as f64, bytes: operands.iter().map(bytes).sum() };
-        let Slot::Activation { stage, .. } = &self.slots[output.0] else {
+        let Slot::Activation { stage, .. } = &self.slots[of.0] else {
             unreachable!("an operation writes activations only")
         };
         let (stage, groups, operands) = (stage.clone(), groups.map(|groups| groups as u32), operands.to_vec());

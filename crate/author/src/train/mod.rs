@@ -20,7 +20,7 @@ mod weights;
 
 use crate::dataset::{Sample, Setup, digest, fingerprint};
 use crate::{Error, Result};
-use adam::{Moments, cosine};
+use adam::{Moments, schedule};
 use ctsn_core::device::{Device, Space};
 use ctsn_core::model::{HostModel, Storage};
 use ctsn_core::network::{Activations, DeviceModel, Streams, forward};
@@ -207,7 +207,7 @@ impl Trainer {
 
     /// Learning rate of optimisation step `step`.
     fn rate(&self, step: usize) -> f32 {
-        cosine(self.settings.rate, self.progress_at(step) as f32)
+        schedule(self.settings.rate, self.progress_at(step) as f32)
     }
 
     /// Optimisation step number `done`.

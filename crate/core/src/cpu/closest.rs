@@ -1,4 +1,4 @@
-//! The closest point of a posed body, searched over its surface. Twins: shaders/collide.foot.wgsl, collide.walk.wgsl, collide.triangle.wgsl.
+//! The closest point of a posed body, searched over its surface. Twins: shaders/collide.foot.wgsl, collide.walk.wgsl.
 
 use super::eight::{closest_on_triangles, dot, from, splat};
 use fearless_simd::{Simd, SimdBase, SimdMask, f32x8};
@@ -88,6 +88,9 @@ pub type Place = (u32, f32);
 /// What a search found: squared distance to the body, infinite where there is none, and the displacement to its gap.
 pub type Found = (f32, Vec3);
 
+/// No body.
+pub const NOTHING: Found = (f32::INFINITY, Vec3::ZERO);
+
 /// The one that is closer to its body.
 #[inline(always)]
 pub fn nearer(a: Found, b: Found) -> Found {
@@ -107,7 +110,7 @@ impl Posed<'_> {
 
     /// The other two corners of the triangles around a vertex.
     #[inline(always)]
-    pub fn fan(&self, vertex: u32) -> &[[u32; 2]] {
+    fn fan(&self, vertex: u32) -> &[[u32; 2]] {
         &self.fans[self.offsets[vertex as usize] as usize..self.offsets[vertex as usize + 1] as usize]
     }
 
@@ -177,10 +180,12 @@ impl Posed<'_> {
     /// neighbours' triangles as well left as much inside, for seven times the work.)
     #[inline(always)]
     pub fn widely<S: Simd>(&self, simd: S, point: Vec3, vertex: u32) -> Found {
-        let mut found = self.foot(simd, point, vertex);
-        if found.0 == f32::INFINITY {
-            for corners in self.fan(vertex) {
-                found = nearer(found, self.foot(simd, point, corners[0]));
+        let mut found = NOTHING;
+        let neighbours = self.fan(vertex).iter().map(|corners| corners[0]);
+        for (place, at) in std::iter::once(vertex).chain(neighbours).enumerate() {
+            found = nearer(found, self.foot(simd, point, at));
+            if place == 0 && found.0 < f32::INFINITY {
+                break;
             }
         }
         found
@@ -192,12 +197,12 @@ impl Posed<'_> {
     /// normal, the cloth's own or its neighbours' pushes (no steadier: cloth that a leg passes through must change sides somewhere).
     /// Pushed straight to the closest point, instead of along the interpolated normal, cloth trembles much more (5 -> 8 %, 2 -> 8 %).
     #[inline(always)]
-    pub fn foot<S: Simd>(&self, simd: S, point: Vec3, vertex: u32) -> Found {
-        let Some((foot, normal)) = self.closest(simd, point, vertex) else { return (f32::INFINITY, Vec3::ZERO) };
+    fn foot<S: Simd>(&self, simd: S, point: Vec3, vertex: u32) -> Found {
+        let Some((foot, normal)) = self.closest(simd, point, vertex) else { return NOTHING };
         let (height, distance) = ((point - foot).dot(normal), point.distance(foot));
         let beside = distance > GAP && height.abs() < STEEPEST * distance;
         if beside || height < -DEPTH {
-            return (f32::INFINITY, Vec3::ZERO);
+            return NOTHING;
         }
         // Outside, the distance itself: what has room must not move, whatever the normals at a ridge are.
         let height = if height > 0.0 { distance } else { height };
@@ -210,7 +215,7 @@ impl Posed<'_> {
         let a = self.position(vertex);
         let mut best = (f32::INFINITY, [vertex; 2], [0.0; 2]);
         for (ring, fan) in self.rings.of(vertex).iter().zip(self.fan(vertex).chunks(RING)) {
-            // Places without a triangle hold one without extent.
+            // Places without a triangle hold one without extent, no closer than the vertex itself.
             let mut third = [[a.x; RING], [a.y; RING], [a.z; RING]];
             for (place, [_, corner]) in fan.iter().enumerate() {
                 [third[0][place], third[1][place], third[2][place]] = self.positions[*corner as usize];

@@ -1,5 +1,5 @@
 //! Eight points or triangles at once. What works on vectors stands in functions, never in closures nor in `array::map`, whose bodies
-//! were not compiled for the level: the search over the body took twice as long.
+//! were not compiled for the level: the search over the body took twice as long. Twin: shaders/collide.triangle.wgsl.
 
 use fearless_simd::{Select, Simd, SimdBase, SimdFloat, f32x8, mask32x8};
 use glam::Vec3;

@@ -158,7 +158,7 @@ impl Device for Cpu {
     }
 }
 
-/// The body where it is posed.
+/// The body where it is posed. (`settle` gathers the rings again, 0.02 ms: what `collide` saw is not taken for granted.)
 fn at<'a>(
     body: &'a Body<Vec<f32>, Vec<u32>>,
     positions: &'a [f32],

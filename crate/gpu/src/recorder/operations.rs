@@ -11,6 +11,9 @@ use ctsn_core::topology::Graph;
 use ctsn_shaders::{self as shaders, Shader};
 use std::borrow::Cow;
 
+/// Operations of a walk over the body, from four seeds.
+const WALK: usize = 8 * (4 + 12);
+
 /// The largest power of two that is not above `number`.
 fn power_of_two_below(number: usize) -> usize {
     1 << number.ilog2()
@@ -173,8 +176,8 @@ impl Device for Recorder<'_> {
     }
 
     fn collide(&mut self, body: &Body<Id, IndexId>, posed: &Id, normals: &Id, positions: &Id, push: &mut Id) {
-        // A walk of about two steps, six triangles around each vertex.
-        self.search(&shaders::COLLIDE, body, [*posed, *normals, *positions], *push, 6 * 60);
+        // A walk of about two steps of six neighbours, six triangles around its end.
+        self.search(&shaders::COLLIDE, body, [*posed, *normals, *positions], *push, WALK + 6 * 60);
     }
 
     fn spread(&mut self, graph: &Graph<IndexId>, push: &Id, before: &Id, after: &mut Id) {
@@ -192,8 +195,14 @@ impl Device for Recorder<'_> {
     }
 
     fn settle(&mut self, body: &Body<Id, IndexId>, posed: &Id, normals: &Id, displacement: &Id, positions: &mut Id) {
-        // One vertex in twenty or so is looked at again, by seven times as many triangles.
-        self.search(&shaders::SETTLE, body, [*posed, *normals, *displacement], *positions, 7 * 6 * 60 / 20);
+        // One vertex in twenty or so is looked at again, from its neighbours' neighbours, too.
+        self.search(
+            &shaders::SETTLE,
+            body,
+            [*posed, *normals, *displacement],
+            *positions,
+            (WALK + 8 * 36 + 6 * 60) / 20,
+        );
     }
 
     fn surface(&mut self, vertex: &[u32], positions: &Id, normals: &Id, drawn: &mut Drawn<Id>) {
@@ -210,8 +219,7 @@ impl Device for Recorder<'_> {
 }
 
 impl Recorder<'_> {
-    /// A search over the posed body: its positions, normals and a number per coordinate of the cloth -> such numbers. `flops` of each vertex
-    /// beside those of the walk.
+    /// A search over the posed body: its positions, normals and a number per coordinate of the cloth -> such numbers. `flops` of each vertex.
     fn search(&mut self, shader: &'static Shader, body: &Body<Id, IndexId>, inputs: [Id; 3], output: Id, flops: usize) {
         let [posed, normals, cloth] = inputs;
         let n = self.length(cloth) / 3;
@@ -240,6 +248,6 @@ impl Recorder<'_> {
             elsewhere: collide::ELSEWHERE,
             again: settle::AGAIN,
         };
-        self.dispatch(shader, params, &operands, [n, 1], output, n * (8 * (width + 12) + flops));
+        self.dispatch(shader, params, &operands, [n, 1], posed, n * flops);
     }
 }

@@ -8,7 +8,7 @@ mod garment;
 use crate::dataset::{Sample, Setup};
 use crate::evaluate::{Judge, differences, predictions};
 use crate::rig::vertices;
-use crate::train::adam::{Moments, cosine};
+use crate::train::adam::{Moments, schedule};
 use crate::train::gradient::distance::distance;
 use crate::train::item::Item;
 use crate::train::tape::{Id, Lane, Shared, Tape};
@@ -168,7 +168,7 @@ impl Deepsd {
         let mut total = 0.0;
         for (i, batch) in order.chunks(batch).enumerate() {
             let step = done * steps + i;
-            let rate = cosine(rate, step as f32 / (epochs * steps) as f32);
+            let rate = schedule(rate, step as f32 / (epochs * steps) as f32);
             total += self.step(batch, step + 1, rate);
         }
         total / order.len() as f32
