@@ -47,34 +47,13 @@ fn is_elsewhere(place: f32, found: f32) -> bool {
     return place > bound * bound;
 }
 
-// The displacement to the gap, and the squared distance to the body around the end of a walk: room above all the triangles there.
-fn around(point: vec3<f32>, place: Place) -> vec4<f32> {
-    let at = position(place.vertex);
-    let up = normal(place.vertex);
-    var top = 0.0;
-    for (var k = offsets[place.vertex]; k < offsets[place.vertex + 1u]; k++) {
-        top = max(top, dot(position(fans[k].x) - at, up));
-    }
-    if (dot(point - at, up) - params.gap > top) {
+// The displacement to the gap, and the squared distance to the body around a place. (Parted in two functions, or with the highest corner
+// sought here instead of on the walk, a software adapter took 5 ms instead of 2.)
+fn push_from(point: vec3<f32>, place: Place) -> vec4<f32> {
+    let vertex = place.vertex;
+    if (dot(point - position(vertex), normal(vertex)) - place.top > params.gap) {
         return vec4(0.0, 0.0, 0.0, place.squared);
     }
-    return widely(point, place.vertex);
-}
-
-// The closest of the triangles around a vertex; where the point is beside them, of those around its neighbours.
-fn widely(point: vec3<f32>, vertex: u32) -> vec4<f32> {
-    var found = foot_at(point, vertex);
-    if (found.w == 3.4e38) {
-        for (var k = offsets[vertex]; k < offsets[vertex + 1u]; k++) {
-            let next = foot_at(point, fans[k].x);
-            found = select(found, next, next.w < found.w);
-        }
-    }
-    return found;
-}
-
-// The same for the closest of the triangles around a vertex alone.
-fn foot_at(point: vec3<f32>, vertex: u32) -> vec4<f32> {
     let a = position(vertex);
     var best = vec3(3.4e38, 0.0, 0.0);
     var foot = vec3(0.0);

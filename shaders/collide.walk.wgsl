@@ -1,56 +1,43 @@
 // Ways over the body's surface to the vertex nearest to a point, for collide.wgsl and settle.wgsl. Twins:
 // crate/core/src/cpu/closest.rs, and collide.rs for the seeds.
 
-// A body vertex and the squared distance to it.
+// Where a walk ended: vertex, squared distance to it, highest corner of the triangles around it along its normal.
 struct Place {
     vertex: u32,
     squared: f32,
+    top: f32,
 }
 
-fn closer(best: Place, vertex: u32, point: vec3<f32>) -> Place {
-    let found = squared(point - position(vertex));
-    return Place(select(best.vertex, vertex, found < best.squared), min(best.squared, found));
-}
-
-// The nearest of the seeds of cloth vertex i, the last of them excepted.
-fn nearest_own(i: u32, point: vec3<f32>) -> Place {
-    var best = Place(seeds_of[i], 3.4e38);
-    for (var s = 0u; s < max(params.seeds - 1u, 1u); s++) {
-        best = closer(best, seeds_of[s * params.vertices + i], point);
+// The nearest vertex downhill from the nearest of some seeds of cloth vertex i.
+fn from_seeds(i: u32, point: vec3<f32>, first: u32, end: u32) -> Place {
+    var best = 0u;
+    var least = 3.4e38;
+    for (var s = first; s < end; s++) {
+        let vertex = seeds_of[s * params.vertices + i];
+        let found = squared(point - position(vertex));
+        best = select(best, vertex, found < least);
+        least = min(least, found);
     }
-    return best;
+    return downhill(point, best, least);
 }
 
-// The nearest vertex downhill.
-fn walk(point: vec3<f32>, start: Place) -> Place {
+// The nearest vertex downhill from a place.
+fn downhill(point: vec3<f32>, start: u32, distance_squared: f32) -> Place {
     var best = start;
-    for (var taken = 0u; taken < params.steps; taken++) {
-        let next = step_from(point, best, best.vertex);
-        if (next.vertex == best.vertex) {
-            break;
+    var least = distance_squared;
+    for (var step = 0u; step < params.steps; step++) {
+        let before = best;
+        var top = 0.0;
+        for (var k = offsets[before]; k < offsets[before + 1u]; k++) {
+            let vertex = fans[k].x;
+            let found = squared(point - position(vertex));
+            top = max(top, dot(position(vertex) - position(before), normal(before)));
+            best = select(best, vertex, found < least);
+            least = min(least, found);
         }
-        best = next;
+        if (best == before) {
+            return Place(best, least, top);
+        }
     }
-    return best;
-}
-
-// The same from the nearest neighbour of a neighbour: over a ridge, into the crease behind it.
-fn leap(point: vec3<f32>, start: Place) -> Place {
-    var best = start;
-    for (var k = offsets[start.vertex]; k < offsets[start.vertex + 1u]; k++) {
-        best = step_from(point, best, fans[k].x);
-    }
-    if (best.vertex == start.vertex) {
-        return start;
-    }
-    return walk(point, best);
-}
-
-// The nearest neighbour of a vertex, if it is nearer than the best so far.
-fn step_from(point: vec3<f32>, nearest: Place, vertex: u32) -> Place {
-    var best = nearest;
-    for (var k = offsets[vertex]; k < offsets[vertex + 1u]; k++) {
-        best = closer(best, fans[k].x, point);
-    }
-    return best;
+    return Place(best, least, 3.4e38);
 }

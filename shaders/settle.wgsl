@@ -5,16 +5,43 @@
 @group(0) @binding(6) var<storage, read> displacement: array<f32>;
 @group(0) @binding(7) var<storage, read_write> positions: array<f32>;
 
+// The same walk again from the nearest neighbour of a neighbour: over a ridge, into the crease behind it.
+fn leap(point: vec3<f32>, start: Place) -> Place {
+    var best = start.vertex;
+    var least = start.squared;
+    for (var j = offsets[start.vertex]; j < offsets[start.vertex + 1u]; j++) {
+        for (var k = offsets[fans[j].x]; k < offsets[fans[j].x + 1u]; k++) {
+            let found = squared(point - position(fans[k].x));
+            best = select(best, fans[k].x, found < least);
+            least = min(least, found);
+        }
+    }
+    return downhill(point, best, least);
+}
+
+// The closest of the triangles around a vertex; where the point is beside them, of those around its neighbours.
+fn widely(point: vec3<f32>, vertex: u32) -> vec4<f32> {
+    // Without a highest corner, the triangles are looked at.
+    var found = push_from(point, Place(vertex, 0.0, 3.4e38));
+    if (found.w == 3.4e38) {
+        for (var k = offsets[vertex]; k < offsets[vertex + 1u]; k++) {
+            let next = push_from(point, Place(fans[k].x, 0.0, 3.4e38));
+            found = select(found, next, next.w < found.w);
+        }
+    }
+    return found;
+}
+
 // The displacement that brings a point to the gap, and the squared distance to the body.
 fn look(i: u32, point: vec3<f32>) -> vec4<f32> {
-    let place = leap(point, walk(point, nearest_own(i, point)));
+    let own = max(params.seeds - 1u, 1u);
+    let place = leap(point, from_seeds(i, point, 0u, own));
     let found = widely(point, place.vertex);
     let other = other_seed(i);
-    let start = closer(Place(other, 3.4e38), other, point);
-    if (other == seeds_of[i] || is_elsewhere(start.squared, place.squared)) {
+    if (other == seeds_of[i] || is_elsewhere(squared(point - position(other)), place.squared)) {
         return found;
     }
-    let second = widely(point, leap(point, walk(point, start)).vertex);
+    let second = widely(point, leap(point, from_seeds(i, point, own, params.seeds)).vertex);
     return select(found, second, second.w < found.w);
 }
 

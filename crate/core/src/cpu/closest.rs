@@ -173,7 +173,7 @@ impl Posed<'_> {
         for ring in self.rings.of(vertex) {
             top = top.max(dot(from(simd, at, &ring.positions), splat(simd, up)).reduce_max());
         }
-        if room > top { (squared, Vec3::ZERO) } else { self.widely(simd, point, vertex) }
+        if room > top { (squared, Vec3::ZERO) } else { self.foot(simd, point, vertex) }
     }
 
     /// The closest of the triangles around a vertex; where the point is beside them, of those around its neighbours. (Always looking at the
