@@ -7,7 +7,7 @@ use fearless_simd::{Level, Simd, dispatch};
 use glam::Vec3;
 
 /// Distance moved beyond which a vertex is looked at again, metres: one in twenty of a cape, one in ten of a skirt. (By the first look alone, a
-/// cape kept a vertex 4.1 mm inside and a skirt one 8.4 mm; with 1 mm the cape one of 2.1 mm, with this none and 0.6 mm.)
+/// cape kept a vertex 4.1 mm inside and a skirt one 8.4 mm; with 1 mm the cape one of 2.1 mm, with this none and 0.7 mm.)
 pub const AGAIN: f32 = 5e-4;
 
 /// displacement [n, 3], seeds [n, width] (body vertices) -> positions [n, 3], moved.
