@@ -5,13 +5,14 @@ use anyhow::{Context, Result, anyhow};
 use ctsn_author::body::body;
 use ctsn_author::dataset::{self, Dataset, Setup};
 use ctsn_author::train::{self, End, Files, Part, Row, Slices, Trainer, Variant};
-use ctsn_core::model::{HostModel, Storage};
+use ctsn_core::model::{Body, HostModel, Storage};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// Train the network on a dataset: all clips but the last tenth (with fewer than ten: the first 90 % of each)
 ///
-/// Mixed poses of the dataset are learned from, too. A tenth of the frames are not learned from, but predicted after every epoch: the model
+/// Mixed poses of the dataset are learned from, too, and to stay outside the body from others that are mixed on the way and need no
+/// simulation. A tenth of the frames are not learned from, but predicted after every epoch: the model
 /// with the least error on them is kept. The learning curve stands beside the model (MODEL.curve.csv). A checkpoint is written every few
 /// epochs; training interrupted goes on from it, to the same result. A model that this very training has made is left as it is.
 #[derive(clap::Args)]
@@ -73,7 +74,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     };
     // Before the training: what cannot be made of this body must not be found out after hours.
     let body = body(&dataset.setup, &slices.train)?;
-    let mut trainer = arguments.settings.trainer(&dataset.setup, &slices)?;
+    let mut trainer = arguments.settings.trainer(&dataset.setup, &slices, body)?;
     let key = arguments.settings.key(&dataset.setup, &slices, &trainer);
     if made_by(&arguments.output, &key) {
         println!("{}: has been trained so already; delete it to train anew", arguments.output.display());
@@ -88,9 +89,8 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     match (end, trainer.best()) {
         (End::Diverged(error), None) => Err(error.into()),
         (_, None) => Err(anyhow!("no epoch was trained: wanted at least one")),
-        (end, Some((best, mut model))) => {
+        (end, Some((best, model))) => {
             let silent = train::is_mesh_silent(&model, &slices.validation)?;
-            model.body = Some(body);
             // What diverged is to be tried again.
             let key = Some(key).filter(|_| !matches!(end, End::Diverged(_)));
             let bytes = arguments.settings.store(&dataset.setup, &slices, &trainer, &best, model, key);
@@ -119,11 +119,12 @@ fn made_by(path: &Path, key: &str) -> bool {
 
 impl Settings {
     /// A trainer that has not begun.
-    fn trainer(&self, setup: &Setup, slices: &Slices) -> Result<Trainer> {
+    fn trainer(&self, setup: &Setup, slices: &Slices, body: Body<Vec<f32>, Vec<u32>>) -> Result<Trainer> {
         let Self { epochs, time_budget: budget, patience, batch, learning_rate: rate, seed, .. } = *self;
         let variant = Variant::without(&self.without);
         let architecture = variant.sizes(self.network.architecture());
-        let model = train::initial(setup, &slices.train, architecture, seed)?;
+        let mut model = train::initial(setup, &slices.train, architecture, seed)?;
+        model.body = Some(body);
         let mixed = if slices.mixed == 0 { String::new() } else { format!(" ({} of them mixed)", slices.mixed) };
         println!(
             "{} poses to learn from{mixed}, {} to validate, {} vertices, {architecture:?}",

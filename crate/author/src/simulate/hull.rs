@@ -18,7 +18,7 @@ const GAP: f64 = 0.0015;
 /// Rounds of averaging over the skin's neighbours, so that coarse bodies do not bend it in steps.
 const ROUNDS: usize = 4;
 /// How far the skin is raised for what comes out in some poses only, metres.
-const HIGHEST: f64 = 0.003;
+const HIGHEST: f64 = 0.006;
 /// Joints a vertex of the skin may follow.
 const JOINTS: usize = 6;
 

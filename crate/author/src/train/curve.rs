@@ -14,6 +14,8 @@ pub struct Row {
     pub coarse: f32,
     /// Mean training loss of the whole prediction against the truth, metres.
     pub fine: f32,
+    /// Mean of what it lacks to the gap around the body, metres: samples and unlabelled poses.
+    pub penetration: f32,
     /// E_dist on the validation slice, metres.
     pub distance: f32,
     /// E_norm on the validation slice, degrees.
@@ -27,9 +29,10 @@ pub struct Row {
 /// Writes the curve: a line of names, then a line per row, metres, degrees and seconds.
 pub fn write_curve(path: &Path, rows: &[Row]) -> Result<()> {
     let mut text =
-        "epoch,coarse_loss,fine_loss,validation_distance,validation_normal,learning_rate,seconds\n".to_owned();
-    for Row { epoch, coarse, fine, distance, normal, rate, seconds } in rows {
-        text += &format!("{epoch},{coarse},{fine},{distance},{normal},{rate},{seconds:.1}\n");
+        "epoch,coarse_loss,fine_loss,penetration_loss,validation_distance,validation_normal,learning_rate,seconds\n"
+            .to_owned();
+    for Row { epoch, coarse, fine, penetration, distance, normal, rate, seconds } in rows {
+        text += &format!("{epoch},{coarse},{fine},{penetration},{distance},{normal},{rate},{seconds:.1}\n");
     }
     write(path, text.as_bytes())
 }

@@ -1,10 +1,12 @@
 //! Training from the first epoch to the last: validation after every epoch, the best parameters kept, checkpoints, and the reasons to
 //! stop before the end: no gain, no time left, divergence.
 
-use super::{Loss, Trainer, curve};
+use super::step::Worker;
+use super::{Item, Loss, Trainer, curve};
 use crate::dataset::Sample;
 use crate::{Error, Result};
 pub use curve::Row;
+use rayon::prelude::*;
 use std::path::PathBuf;
 
 /// Epochs between checkpoints.
@@ -60,7 +62,7 @@ impl Trainer {
             None => self.validate(validation)?.0,
         };
         self.untrained = Some(untrained);
-        let Loss { coarse, fine } = self.epoch(|_, _, _| {})?;
+        let Loss { coarse, fine, penetration } = self.epoch(|_, _, _| {})?;
         let (distance, normal) = self.validate(validation)?;
         if fine > EXPLOSION * untrained || !distance.is_finite() {
             return Err(Error::Diverged(format!(
@@ -69,12 +71,28 @@ impl Trainer {
             )));
         }
         let rate = self.rate(self.epoch * self.steps());
-        let row = Row { epoch: self.epoch, coarse, fine, distance, normal, rate, seconds: self.seconds() };
+        let row = Row { epoch: self.epoch, coarse, fine, penetration, distance, normal, rate, seconds: self.seconds() };
         if self.best_epoch().is_none_or(|best| distance < best.distance) {
             self.best = self.parameters.iter().map(|id| self.shared.get(*id).to_vec()).collect();
         }
         self.curve.push(row);
         Ok(row)
+    }
+
+    /// Mean E_dist (metres) and E_norm (degrees) of the model as it stands, on `samples`. network.md §7.
+    pub fn validate(&mut self, samples: &[&Sample]) -> Result<(f32, f32)> {
+        let (recording, shared, model, workers) = (&self.recording, &self.shared, &self.model, self.workers.len());
+        let run = |(number, worker): (usize, &mut Worker)| {
+            let compare = |sample: &&Sample| {
+                Ok(Item::new(model, sample, None)?.compare(&model.triangles, recording, shared, &mut worker.lane))
+            };
+            samples.iter().skip(number).step_by(workers).map(compare).collect()
+        };
+        let errors = self.workers.par_iter_mut().enumerate().map(run).collect::<Result<Vec<Vec<(f64, f64)>>>>()?;
+        // Summed in the samples' order, whatever the number of threads.
+        let ordered = || (0..samples.len()).map(|i| errors[i % workers][i / workers]);
+        let mean = |total: f64| (total / samples.len() as f64) as f32;
+        Ok((mean(ordered().map(|error| error.0).sum()), mean(ordered().map(|error| error.1).sum())))
     }
 
     /// The epoch with the least E_dist on the validation slice.

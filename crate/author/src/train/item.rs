@@ -2,19 +2,21 @@
 
 use super::Loss;
 use super::gradient::distance::distance;
+use super::penetration::Penetration;
+use super::recording::Recording;
 use super::smooth::Smoother;
-use super::tape::{Id, Lane, Shared, Tape};
+use super::tape::{Id, Lane, Shared};
 use crate::dataset::Sample;
 use crate::evaluate::differences;
 use crate::rig::vertices;
 use crate::{Error, Result};
 use ctsn_core::model::HostModel;
-use ctsn_core::network::Activations;
 use ctsn_core::pose::BodyFrame;
 
-/// One sample as the tape sees it.
+/// One pose as the tape sees it.
 pub(crate) struct Item {
     pub frame: BodyFrame,
+    /// Empty where nothing was simulated: such a pose teaches only to stay outside the body.
     pub truth: Vec<f32>,
     /// What the skeleton stream learns.
     pub smooth: Vec<f32>,
@@ -27,52 +29,65 @@ impl Item {
             let (wanted, found) = (model.sizes.vertices, sample.truth.len() / 3);
             return Err(Error::Training(format!("a sample has {found} vertices, the model {wanted}")));
         }
-        let mut frame = BodyFrame::new(model.sizes.joints);
-        model.rig.body_frame(&sample.joints, &mut frame)?;
         let smooth = smoother.map_or_else(|| sample.truth.clone(), |smoother| smoother.smooth(&sample.truth));
-        Ok(Self { frame, truth: sample.truth.clone(), smooth })
+        Ok(Self { truth: sample.truth.clone(), smooth, ..Self::posed(model, &sample.joints)? })
     }
 
-    /// Forward and backward pass; gradients are those of the mean loss of `batch` samples. `coarse` is the coarse prediction where both
-    /// streams learn: what is left of the network otherwise learns the truth itself.
-    pub fn learn(
+    /// A pose without truth: world joint transforms, row-major.
+    pub fn posed(model: &HostModel, joints: &[f32]) -> Result<Self> {
+        let mut frame = BodyFrame::new(model.sizes.joints);
+        model.rig.body_frame(joints, &mut frame)?;
+        Ok(Self { frame, truth: Vec::new(), smooth: Vec::new() })
+    }
+
+    /// Forward and backward pass; gradients are those of the mean loss of `batch` poses. `penetration` takes part where there is one.
+    pub(super) fn learn(
         &self,
-        tape: &Tape,
+        recording: &Recording,
         shared: &Shared,
         lane: &mut Lane,
-        a: &Activations<Id>,
-        coarse: Option<Id>,
+        mut penetration: Option<&mut Penetration>,
         batch: usize,
     ) -> Loss {
-        self.predict(tape, shared, lane, a);
+        self.predict(recording, shared, lane);
+        let scale = 1.0 / batch as f32;
+        penetration.iter_mut().for_each(|penetration| penetration.pose(&self.frame));
         let mut against = |predicted: Id, truth: &[f32]| {
             let mut g = lane.take_gradient(predicted);
-            let loss = distance(lane.value(shared, predicted), truth, 1.0 / batch as f32, &mut g);
+            let value = lane.value(shared, predicted);
+            let distance = if truth.is_empty() {
+                g.fill(0.0);
+                0.0
+            } else {
+                distance(value, truth, scale, &mut g)
+            };
+            let depth = penetration.as_mut().map_or(0.0, |penetration| penetration.learn(value, scale, &mut g));
             *lane.gradient_mut(predicted) = g;
-            loss
+            (distance, depth)
         };
-        let fine = against(a.positions, &self.truth);
-        let loss = Loss { fine, coarse: coarse.map_or(fine, |coarse| against(coarse, &self.smooth)) };
-        tape.backward(shared, lane);
-        loss
+        let (fine, penetration) = against(recording.activations.positions, &self.truth);
+        let coarse = recording.coarse.map_or(fine, |coarse| against(coarse, &self.smooth).0);
+        recording.tape.backward(shared, lane);
+        Loss { coarse, fine, penetration }
     }
 
     /// Distance of the prediction from the truth (metres) and angle between their normals (degrees).
-    pub fn compare(
+    pub(super) fn compare(
         &self,
-        model: &HostModel,
-        tape: &Tape,
+        triangles: &[u32],
+        recording: &Recording,
         shared: &Shared,
         lane: &mut Lane,
-        a: &Activations<Id>,
     ) -> (f64, f64) {
-        self.predict(tape, shared, lane, a);
-        differences(&vertices(lane.value(shared, a.positions)), &vertices(&self.truth), &model.triangles)
+        self.predict(recording, shared, lane);
+        let predicted = lane.value(shared, recording.activations.positions);
+        differences(&vertices(predicted), &vertices(&self.truth), triangles)
     }
 
-    fn predict(&self, tape: &Tape, shared: &Shared, lane: &mut Lane, a: &Activations<Id>) {
+    fn predict(&self, recording: &Recording, shared: &Shared, lane: &mut Lane) {
+        let a = &recording.activations;
         lane.value_mut(a.pose).copy_from_slice(&self.frame.vector);
         lane.value_mut(a.body_frame).copy_from_slice(&self.frame.transforms);
-        tape.run(shared, lane);
+        recording.tape.run(shared, lane);
     }
 }

@@ -10,8 +10,11 @@ mod initial;
 pub(crate) mod item;
 mod limbs;
 mod operation;
+mod penetration;
+mod recording;
 mod slice;
 mod smooth;
+mod step;
 pub(crate) mod tape;
 #[cfg(test)]
 mod tests;
@@ -21,19 +24,22 @@ mod weights;
 use crate::dataset::{Sample, Setup, digest, fingerprint};
 use crate::{Error, Result};
 use adam::{Moments, schedule};
-use ctsn_core::device::{Device, Space};
+use ctsn_core::device::Device;
 use ctsn_core::model::{HostModel, Storage};
-use ctsn_core::network::{Activations, DeviceModel, Streams, forward};
+use ctsn_core::network::{DeviceModel, Streams};
 pub(crate) use curve::write_curve;
 pub use fit::{End, Files, Row};
 pub use initial::{Architecture, initial};
 pub(crate) use initial::{layer, mlp};
 use item::Item;
-use rayon::prelude::*;
+use penetration::Unlabelled;
+use recording::Recording;
+
 pub use slice::{Slices, slices};
 use smooth::Smoother;
 use std::time::{Duration, Instant};
-use tape::{Id, Lane, Shared, Tape};
+use step::Worker;
+use tape::{Id, Shared, Tape};
 pub use variant::{Part, Variant, is_mesh_silent};
 
 /// Shares a batch is dealt in.
@@ -74,6 +80,8 @@ pub struct Loss {
     pub coarse: f32,
     /// Whole prediction against the truth: E_dist on the training samples.
     pub fine: f32,
+    /// What predictions lack to the gap around the body, on samples and unlabelled poses.
+    pub penetration: f32,
 }
 
 /// Training in progress: parameters, moments and the recorded network.
@@ -85,16 +93,17 @@ pub struct Trainer {
     /// [`fingerprint`] of the samples.
     data: u64,
     items: Vec<Item>,
-    tape: Tape,
+    /// The network, as it learns from samples.
+    recording: Recording,
+    /// None where there is no body, or nothing to make poses of.
+    unlabelled: Option<Unlabelled>,
     shared: Shared,
     parameters: Vec<Id>,
     /// Per parameter array, the entries that stay zero: between the parts of Φ, [`limbs`].
     silent: Vec<Vec<usize>>,
     moments: Vec<Moments>,
-    activations: Activations<Id>,
-    coarse: Option<Id>,
-    /// A lane per thread.
-    lanes: Vec<Lane>,
+    /// One per thread.
+    workers: Vec<Worker>,
     /// Gradients of `parameters`, summed over the samples of each share of the batch.
     sums: Vec<Sums>,
     curve: Vec<Row>,
@@ -122,21 +131,14 @@ impl Trainer {
         let start = digest(&model.to_bytes(Storage::F32));
         let smoother = Smoother::new(model.sizes.vertices, &setup.triangles);
         let items = samples.iter().map(|sample| Item::new(&model, sample, Some(&smoother))).collect::<Result<_>>()?;
-        let mut tape = Tape::default();
-        let recorded = upload(&model, &mut tape);
-        let learning = recorded.parameters().into_iter().enumerate().filter(|(i, _)| variant.learns(*i));
-        let (silent, parameters): (Vec<_>, Vec<Id>) = learning.map(|(i, id)| (silent(&model, i), *id)).unzip();
-        let shared = tape.seal(&parameters.iter().collect::<Vec<_>>());
-        let mut activations = Activations::new(&model, |_, length| tape.buffer(&vec![0.0; length]));
         let streams = if variant.mesh { Streams::Both } else { Streams::Skeleton };
-        forward(&mut tape, &recorded, streams, Space::Body, &mut activations);
-        let coarse = (variant.skeleton && variant.mesh).then(|| {
-            let mut coarse = tape.buffer(&vec![0.0; model.sizes.vertices * 3]);
-            tape.skin(&activations.coarse, &recorded.skin, &activations.body_frame, Space::Body, &mut coarse);
-            coarse
-        });
+        let (recording, shared, learning) = Recording::new(&model, variant, streams);
+        let (silent, parameters): (Vec<_>, Vec<Id>) =
+            learning.into_iter().map(|(i, id)| (silent(&model, i), id)).unzip();
+        let unlabelled = Unlabelled::new(&model, setup, samples, &settings)?;
         let shares = SHARES.min(batch);
-        let lanes = (0..shares.min(rayon::current_num_threads())).map(|_| tape.lane(&shared)).collect();
+        let worker = || Worker::new(&model, &recording, unlabelled.as_ref(), &shared);
+        let workers = (0..shares.min(rayon::current_num_threads())).map(|_| worker()).collect();
         let lengths = || parameters.iter().map(|id| shared.get(*id).len());
         let sums = vec![lengths().map(|length| vec![0.0; length]).collect(); shares];
         let moments = lengths().map(Moments::new).collect();
@@ -146,14 +148,13 @@ impl Trainer {
             start,
             data: fingerprint(setup, samples),
             items,
-            tape,
+            recording,
+            unlabelled,
             shared,
             parameters,
             silent,
             moments,
-            activations,
-            coarse,
-            lanes,
+            workers,
             sums,
             curve: Vec::new(),
             untrained: None,
@@ -170,13 +171,14 @@ impl Trainer {
         let steps = self.steps();
         let mut total = Loss::default();
         for (i, batch) in order.chunks(self.settings.batch).enumerate() {
-            let loss = self.step(batch, self.epoch * steps + i);
+            let loss = self.step(batch, self.epoch * steps + i)?;
             if !(loss.fine.is_finite() && loss.coarse.is_finite()) {
                 return Err(Error::Diverged(format!("epoch {} step {}: loss {}", self.epoch + 1, i + 1, loss.fine)));
             }
             let share = batch.len() as f32 / order.len() as f32;
             total.coarse += share * loss.coarse;
             total.fine += share * loss.fine;
+            total.penetration += share * loss.penetration;
             progress(i + 1, steps, loss);
         }
         self.epoch += 1;
@@ -208,55 +210,6 @@ impl Trainer {
     /// Learning rate of optimisation step `step`.
     fn rate(&self, step: usize) -> f32 {
         schedule(self.settings.rate, self.progress_at(step) as f32)
-    }
-
-    /// Optimisation step number `done`.
-    fn step(&mut self, batch: &[usize], done: usize) -> Loss {
-        let rate = self.rate(done);
-        let (tape, shared, items, parameters) = (&self.tape, &self.shared, &self.items, &self.parameters);
-        let (activations, coarse, shares) = (&self.activations, self.coarse, self.sums.len());
-        let each = shares.div_ceil(self.lanes.len());
-        let run = |(thread, (lane, sums)): (usize, (&mut Lane, &mut [Sums]))| {
-            let share = |(number, sums): (usize, &mut Sums)| {
-                sums.iter_mut().for_each(|sum| sum.fill(0.0));
-                lane.exchange(parameters, sums);
-                let mut loss = Loss::default();
-                for item in batch.iter().skip(thread * each + number).step_by(shares) {
-                    let sample = items[*item].learn(tape, shared, lane, activations, coarse, batch.len());
-                    loss.coarse += sample.coarse;
-                    loss.fine += sample.fine;
-                }
-                lane.exchange(parameters, sums);
-                loss
-            };
-            sums.iter_mut().enumerate().map(share).collect()
-        };
-        let shares = self.lanes.par_iter_mut().zip(self.sums.par_chunks_mut(each)).enumerate();
-        let losses: Vec<Vec<Loss>> = shares.map(run).collect();
-        for (i, (id, moments)) in self.parameters.iter().zip(&mut self.moments).enumerate() {
-            let gradients: Vec<&[f32]> = self.sums.iter().map(|sums| sums[i].as_slice()).collect();
-            let parameter = self.shared.get_mut(*id);
-            moments.step(done + 1, rate, &gradients, parameter);
-            self.silent[i].iter().for_each(|entry| parameter[*entry] = 0.0);
-        }
-        let count = batch.len() as f32;
-        let sum = |part: fn(&Loss) -> f32| losses.iter().flatten().map(part).sum::<f32>() / count;
-        Loss { coarse: sum(|loss| loss.coarse), fine: sum(|loss| loss.fine) }
-    }
-
-    /// Mean E_dist (metres) and E_norm (degrees) of the model as it stands, on `samples`. network.md §7.
-    pub fn validate(&mut self, samples: &[&Sample]) -> Result<(f32, f32)> {
-        let (tape, shared, a, model) = (&self.tape, &self.shared, &self.activations, &self.model);
-        let lanes = self.lanes.len();
-        let run = |(number, lane): (usize, &mut Lane)| {
-            let mine = samples.iter().skip(number).step_by(lanes);
-            mine.map(|sample| Ok(Item::new(model, sample, None)?.compare(model, tape, shared, lane, a))).collect()
-        };
-        let errors = self.lanes.par_iter_mut().enumerate().map(run).collect::<Result<Vec<Vec<(f64, f64)>>>>()?;
-        // Summed in the samples' order, whatever the number of lanes.
-        let ordered = || (0..samples.len()).map(|i| errors[i % lanes][i / lanes]);
-        let mean = |total: f64| (total / samples.len() as f64) as f32;
-        Ok((mean(ordered().map(|error| error.0).sum()), mean(ordered().map(|error| error.1).sum())))
     }
 
     /// The model as trained so far.

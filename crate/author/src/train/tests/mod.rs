@@ -1,12 +1,13 @@
 //! Gradients against central differences, per operation and for the whole network; the loss falls.
 
 mod fit;
+mod penetration;
 mod weights;
 
 use super::*;
 use crate::dataset::{Dataset, Description, Record};
 use ctsn_core::cpu::{self, Level};
-use ctsn_core::device::Activation;
+use ctsn_core::device::{Activation, Space};
 use ctsn_core::model::{Layer, Linear, Sizes, Skin};
 use ctsn_core::pose::BodyFrame;
 use ctsn_core::topology::Graph;
@@ -176,9 +177,10 @@ fn whole_network() {
     let (model, setup, samples) = tiny();
     let mut trainer = Trainer::new(model, &setup, &[&samples[0]], Settings::default()).unwrap();
     let mut rng = fastrand::Rng::with_seed(13);
-    let Trainer { tape, shared, lanes, activations, coarse, items, parameters, .. } = &mut trainer;
-    let lane = &mut lanes[0];
-    items[0].learn(tape, shared, lane, activations, *coarse, 1);
+    let Trainer { recording, shared, workers, items, parameters, .. } = &mut trainer;
+    let Recording { tape, activations, coarse } = &*recording;
+    let lane = &mut workers[0].lane;
+    items[0].learn(recording, shared, lane, None, 1);
     // The coarse loss alone for what only the skeleton stream trains, the sum for the skin weights, the fine loss for the rest:
     // the fine loss does not reach the skeleton stream, by design.
     let skeleton: Vec<bool> = (0..parameters.len()).map(|i| i == 1 || (3..3 + 2 * 2).contains(&i)).collect();
