@@ -11,8 +11,8 @@ use std::time::Duration;
 
 /// Train the network on a dataset: all clips but the last tenth (with fewer than ten: the first 90 % of each)
 ///
-/// Mixed poses of the dataset are learned from, too, and to stay outside the body from others that are mixed on the way and need no
-/// simulation. A tenth of the frames are not learned from, but predicted after every epoch: the model
+/// Mixed poses of the dataset are learned from, too. From further ones, which need no simulation, cloth on a character with limbs learns to
+/// stay outside the body. A tenth of the frames are not learned from, but predicted after every epoch: the model
 /// with the least error on them is kept. The learning curve stands beside the model (MODEL.curve.csv). A checkpoint is written every few
 /// epochs; training interrupted goes on from it, to the same result. A model that this very training has made is left as it is.
 #[derive(clap::Args)]
@@ -38,13 +38,13 @@ pub struct Settings {
     /// Stop after so many epochs without a better validation error
     #[arg(long, default_value_t = 50)]
     patience: usize,
-    /// Poses per optimisation step
+    /// Simulated poses per optimisation step
     #[arg(long, default_value_t = 8)]
     batch: usize,
     /// Adam's learning rate at the start; it falls along a cosine
     #[arg(long, default_value_t = 1e-3)]
     learning_rate: f32,
-    /// Seed of initial weights and order
+    /// Seed of initial weights, of the order, and of the poses mixed on the way
     #[arg(long, default_value_t = 1)]
     seed: u64,
     #[command(flatten)]

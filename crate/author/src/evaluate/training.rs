@@ -57,13 +57,14 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("model.curve.csv");
         assert!(curves(&path).expect("no charts").is_empty());
-        let heads = "epoch,coarse_loss,fine_loss,validation_distance,validation_normal,learning_rate,seconds";
+        let heads =
+            "epoch,coarse_loss,fine_loss,penetration_loss,validation_distance,validation_normal,learning_rate,seconds";
         let write = |rows: &str| std::fs::write(&path, format!("{heads}\n{rows}\n")).expect("a file");
-        write("1,0.02,0.03,0.04,12.5,0.001,3.0\n2,0.01,0.02,0.03,11.5,0.001,6.0");
+        write("1,0.02,0.03,0.001,0.04,12.5,0.001,3.0\n2,0.01,0.02,0.001,0.03,11.5,0.001,6.0");
         let charts = curves(&path).expect("charts");
         assert_eq!(charts[0].series[1].points, [(1.0, 40.0), (2.0, 30.0)], "millimetres");
         assert_eq!(charts[1].series[0].points, [(1.0, 12.5), (2.0, 11.5)]);
-        write("1,0.02,0.03,fox,12.5,0.001,3.0");
+        write("1,0.02,0.03,0.001,fox,12.5,0.001,3.0");
         let message = curves(&path).err().expect("an error").to_string();
         assert!(
             message.contains("model.curve.csv") && message.contains("line 2") && message.contains("fox"),

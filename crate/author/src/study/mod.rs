@@ -1,5 +1,5 @@
 //! The paper's comparisons on one dataset: each way to predict trained by the same optimiser on the same poses, judged on the same unseen
-//! ones. Paper § "Comparisons", "Ablation Experiments". Every training leaves its outcome in a file: a study goes on where it stopped.
+//! ones; by the paper's losses, without that of penetration, since the models of a study have no body. Paper § "Comparisons", "Ablation Experiments". Every training leaves its outcome in a file: a study goes on where it stopped.
 
 mod deepsd;
 mod flops;

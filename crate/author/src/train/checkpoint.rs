@@ -1,6 +1,6 @@
 //! Checkpoints: parameters, moments, the best parameters and the learning curve. Training resumed from one goes on as if it had not been interrupted.
 
-use super::penetration::WEIGHT;
+use super::penetration::{UNLABELLED, WEIGHT};
 use super::smooth::STEPS;
 use super::{Row, Trainer};
 use crate::dataset::{tensors, write};
@@ -60,7 +60,7 @@ impl Trainer {
 
     /// What two trainings must have in common to go on as one, and by which their models are the same.
     pub fn key(&self) -> String {
-        let constants = format!("smooth {STEPS} penetration {WEIGHT}");
+        let constants = format!("smooth {STEPS} penetration {WEIGHT} unlabelled {UNLABELLED}");
         format!("{:?} {constants} start {:016x} data {:016x}", self.settings, self.start, self.data)
     }
 }

@@ -14,7 +14,7 @@ pub struct Row {
     pub coarse: f32,
     /// Mean training loss of the whole prediction against the truth, metres.
     pub fine: f32,
-    /// Mean of what it lacks to the gap around the body, metres: samples and unlabelled poses.
+    /// Mean of what predictions lack to the gap around the body, metres: see [`Loss`](super::Loss).
     pub penetration: f32,
     /// E_dist on the validation slice, metres.
     pub distance: f32,

@@ -1,4 +1,4 @@
-//! One sample on the tape: its body frame and targets, the losses and what flows back from them. network.md §6.
+//! One pose on the tape: its body frame and targets, the losses and what flows back from them. network.md §6.
 
 use super::Loss;
 use super::gradient::distance::distance;
@@ -51,7 +51,9 @@ impl Item {
     ) -> Loss {
         self.predict(recording, shared, lane);
         let scale = 1.0 / batch as f32;
-        penetration.iter_mut().for_each(|penetration| penetration.pose(&self.frame));
+        if let Some(penetration) = &mut penetration {
+            penetration.pose(&self.frame);
+        }
         let mut against = |predicted: Id, truth: &[f32]| {
             let mut g = lane.take_gradient(predicted);
             let value = lane.value(shared, predicted);
@@ -61,7 +63,7 @@ impl Item {
             } else {
                 distance(value, truth, scale, &mut g)
             };
-            let depth = penetration.as_mut().map_or(0.0, |penetration| penetration.learn(value, scale, &mut g));
+            let depth = penetration.as_mut().map_or(0.0, |penetration| penetration.loss(value, scale, &mut g));
             *lane.gradient_mut(predicted) = g;
             (distance, depth)
         };

@@ -61,7 +61,7 @@ pub struct Settings {
     pub batch: usize,
     /// Adam's learning rate at the start.
     pub rate: f32,
-    /// Seed of initial weights and shuffling.
+    /// Seed of initial weights, shuffling and unlabelled poses.
     pub seed: u64,
     /// The parts that learn.
     pub variant: Variant,
@@ -80,7 +80,7 @@ pub struct Loss {
     pub coarse: f32,
     /// Whole prediction against the truth: E_dist on the training samples.
     pub fine: f32,
-    /// What predictions lack to the gap around the body, on samples and unlabelled poses.
+    /// What predictions lack to the gap around the body: the whole ones of samples, the coarse ones of unlabelled poses.
     pub penetration: f32,
 }
 
@@ -95,7 +95,7 @@ pub struct Trainer {
     items: Vec<Item>,
     /// The network, as it learns from samples.
     recording: Recording,
-    /// None where there is no body, or nothing to make poses of.
+    /// None where there is no body, nothing to make poses of, or no skeleton stream to learn.
     unlabelled: Option<Unlabelled>,
     shared: Shared,
     parameters: Vec<Id>,
@@ -104,7 +104,7 @@ pub struct Trainer {
     moments: Vec<Moments>,
     /// One per thread.
     workers: Vec<Worker>,
-    /// Gradients of `parameters`, summed over the samples of each share of the batch.
+    /// Gradients of `parameters`, summed over the poses of each share.
     sums: Vec<Sums>,
     curve: Vec<Row>,
     /// E_dist on the validation slice before the first epoch, metres.
@@ -172,8 +172,8 @@ impl Trainer {
         let mut total = Loss::default();
         for (i, batch) in order.chunks(self.settings.batch).enumerate() {
             let loss = self.step(batch, self.epoch * steps + i)?;
-            if !(loss.fine.is_finite() && loss.coarse.is_finite()) {
-                return Err(Error::Diverged(format!("epoch {} step {}: loss {}", self.epoch + 1, i + 1, loss.fine)));
+            if [loss.fine, loss.coarse, loss.penetration].iter().any(|part| !part.is_finite()) {
+                return Err(Error::Diverged(format!("epoch {} step {}: {loss:?}", self.epoch + 1, i + 1)));
             }
             let share = batch.len() as f32 / order.len() as f32;
             total.coarse += share * loss.coarse;

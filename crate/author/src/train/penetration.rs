@@ -9,15 +9,21 @@ use crate::Result;
 use crate::dataset::{Sample, Setup};
 use crate::motion::{has_limbs, mixed};
 use crate::rig::{Character, Pose, joints, pose};
+use crate::simulate::is_sound;
 use ctsn_core::cpu::closest::{Posed, Rings};
 use ctsn_core::cpu::{Level, collide, normals, skin};
 use ctsn_core::device::Space;
 use ctsn_core::model::{Body, HostModel};
 use ctsn_core::network::Streams;
 use ctsn_core::pose::BodyFrame;
+use rayon::prelude::*;
 
 /// Weight of a metre inside the body beside a metre from the truth.
 pub(super) const WEIGHT: f32 = 1.0;
+
+/// Unlabelled poses for each of a batch. (Of a skirt in unseen poses, one for each leaves 0.96 % inside, four leave 0.91 %; a step takes 7 %
+/// longer.)
+pub(super) const UNLABELLED: usize = 4;
 
 /// The body of one pose after the other; one per thread.
 pub(super) struct Penetration {
@@ -47,7 +53,7 @@ impl Penetration {
 
     /// Mean over the vertices of what `cloth` [n, 3], body frame, lacks to the gap around the body, metres; its gradient times `scale` and
     /// [`WEIGHT`] is added to g [n, 3].
-    pub fn learn(&mut self, cloth: &[f32], scale: f32, g: &mut [f32]) -> f32 {
+    pub fn loss(&mut self, cloth: &[f32], scale: f32, g: &mut [f32]) -> f32 {
         let Self { body, positions, normals, rings, push } = self;
         let (offsets, fans) = (&body.fans.offsets, body.fans.corners.as_chunks().0);
         let (positions, normals) = (positions.as_chunks().0, normals.as_chunks().0);
@@ -72,27 +78,36 @@ pub(super) struct Unlabelled {
     character: Character,
     frames: Vec<Pose>,
     seed: u64,
+    /// Poses for each step.
+    count: usize,
 }
 
 impl Unlabelled {
     /// Mixtures of the poses in `samples`; none where there is no body to be inside of, no limbs to mix, or no skeleton stream to learn.
     pub fn new(model: &HostModel, setup: &Setup, samples: &[&Sample], settings: &Settings) -> Result<Option<Self>> {
-        if model.body.is_none() || !settings.variant.skeleton {
+        let Settings { variant, seed, batch, .. } = *settings;
+        if model.body.is_none() || !variant.skeleton {
             return Ok(None);
         }
         let character = setup.character()?;
-        if !has_limbs(&character) {
+        let poses = samples.iter().map(|sample| pose(&sample.joints));
+        let frames: Vec<Pose> = poses.filter(|pose| is_sound(&character, pose)).collect();
+        if frames.is_empty() || !has_limbs(&character) {
             return Ok(None);
         }
-        let frames = samples.iter().map(|sample| pose(&sample.joints)).collect();
-        let (recording, ..) = Recording::new(model, settings.variant, Streams::Skeleton);
-        Ok(Some(Self { recording, character, frames, seed: settings.seed }))
+        let (recording, ..) = Recording::new(model, variant, Streams::Skeleton);
+        Ok(Some(Self { recording, character, frames, seed, count: batch * UNLABELLED }))
     }
 
-    /// `count` poses for optimisation step `step`, the same ones whenever it is asked for.
-    pub fn draw(&self, model: &HostModel, step: usize, count: usize) -> Result<Vec<Item>> {
+    /// The poses for optimisation step `step`, the same ones whenever they are asked for.
+    pub fn draw(&self, model: &HostModel, step: usize) -> Result<Vec<Item>> {
         let frames: Vec<&Pose> = self.frames.iter().collect();
-        let number = |i: usize| (self.seed as usize) << 40 | (step * count + i);
-        (0..count).map(|i| Item::posed(model, &joints(&mixed(&self.character, &frames, number(i))))).collect()
+        // Other numbers than those of simulated mixtures, which start at nought.
+        let first = (self.seed as usize + 1) << 40;
+        let item = |i| {
+            let pose = mixed(&self.character, &frames, first | (step * self.count + i));
+            Item::posed(model, &joints(&pose))
+        };
+        (0..self.count).into_par_iter().map(item).collect()
     }
 }

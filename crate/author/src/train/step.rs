@@ -9,10 +9,6 @@ use crate::Result;
 use ctsn_core::model::HostModel;
 use rayon::prelude::*;
 
-/// Unlabelled poses beside each of a batch. (By the penetration they leave in unseen poses, four are a little better than one, and a step
-/// takes 7 % longer.)
-const AMONG: usize = 4;
-
 /// What a thread works with.
 pub(super) struct Worker {
     pub lane: Lane,
@@ -36,15 +32,14 @@ impl Trainer {
     /// Optimisation step number `done`.
     pub(super) fn step(&mut self, batch: &[usize], done: usize) -> Result<Loss> {
         let rate = self.rate(done);
-        let drawn = |unlabelled: &Unlabelled| unlabelled.draw(&self.model, done, batch.len() * AMONG);
-        let drawn = self.unlabelled.as_ref().map_or(Ok(Vec::new()), drawn)?;
+        let drawn = self.unlabelled.as_ref().map_or(Ok(Vec::new()), |poses| poses.draw(&self.model, done))?;
         let batch: Vec<&Item> = batch.iter().map(|item| &self.items[*item]).collect();
         let (shared, parameters, shares) = (&self.shared, &self.parameters, self.sums.len());
-        let (recording, unlabelled) = (&self.recording, self.unlabelled.as_ref().map(|other| &other.recording));
+        let (recording, unlabelled) = (&self.recording, self.unlabelled.as_ref().map(|poses| &poses.recording));
         let each = shares.div_ceil(self.workers.len());
         let run = |(thread, (worker, sums)): (usize, (&mut Worker, &mut [Sums]))| {
             let share = |(number, sums): (usize, &mut Sums)| {
-                let Worker { lane, unlabelled: other, body } = &mut *worker;
+                let Worker { lane, unlabelled: coarse_lane, body } = &mut *worker;
                 let mut learn = |recording: &Recording, lane: &mut Lane, items: &[&Item]| -> Vec<Loss> {
                     lane.exchange(parameters, sums);
                     let mine = items.iter().skip(thread * each + number).step_by(shares);
@@ -54,7 +49,7 @@ impl Trainer {
                     losses
                 };
                 let mut losses = learn(recording, lane, &batch);
-                if let (Some(recording), Some(lane)) = (unlabelled, other) {
+                if let (Some(recording), Some(lane)) = (unlabelled, coarse_lane) {
                     losses.extend(learn(recording, lane, &drawn.iter().collect::<Vec<_>>()));
                 }
                 losses

@@ -211,7 +211,7 @@ impl Device for Tape {
     }
 
     fn blend(&mut self, weights: &Id, basis: &Id, rest: &Id, _confidence: &Id, residual: &mut Id, template: &mut Id) {
-        // Samples are what the range is made of: their confidence is 1.
+        // Samples are what the range is made of, and poses mixed of them hardly leave it: their confidence is 1.
         let (rest, residual, template) = (*rest, *residual, *template);
         let operation = Operation::Blend { weights: *weights, basis: *basis, rest, residual, template };
         self.record(&[*weights, *basis], template, operation);

@@ -35,11 +35,12 @@ fn a_model_and_its_learning_curve_come_out_the_same_twice() {
     assert!(model.training.is_some_and(|text| text.contains("validation_metres")));
     let curve = String::from_utf8(read("out.curve.csv")).expect("text");
     let mut lines = curve.lines();
-    let names = "epoch,coarse_loss,fine_loss,validation_distance,validation_normal,learning_rate,seconds";
+    let names =
+        "epoch,coarse_loss,fine_loss,penetration_loss,validation_distance,validation_normal,learning_rate,seconds";
     assert_eq!(lines.next(), Some(names));
     let rows: Vec<Vec<f64>> =
         lines.map(|line| line.split(',').map(|number| number.parse().expect("a number")).collect()).collect();
-    assert!(rows.len() == 3 && rows.iter().all(|row| row.len() == 7 && row[3] > 0.0), "{curve}");
+    assert!(rows.len() == 3 && rows.iter().all(|row| row.len() == 8 && row[4] > 0.0), "{curve}");
     assert!(!folder.path("out.checkpoint").exists());
     let shown = folder.accepts(&format!("{TRAIN} --epochs 3"));
     assert!(shown.contains("has been trained so already"), "{shown}");

@@ -1,4 +1,4 @@
-//! The loss: mean over vertices of `‖x_p - x_g‖`, the paper's L2 distance and its E_dist. network.md §6, §7.
+//! The loss of distance: mean over vertices of `‖x_p - x_g‖`, the paper's L2 distance and its E_dist. network.md §6, §7.
 
 /// predicted, truth [n, 3] -> loss (metres); its gradient times `scale` overwrites g [n, 3].
 pub fn distance(predicted: &[f32], truth: &[f32], scale: f32, g: &mut [f32]) -> f32 {

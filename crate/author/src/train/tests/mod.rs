@@ -171,7 +171,7 @@ fn tiny() -> (HostModel, Setup, Vec<Sample>) {
     (model, setup, samples)
 }
 
-/// Both losses of one sample and their gradients, as training takes them.
+/// Both losses of distance of one sample and their gradients, as training takes them.
 #[test]
 fn whole_network() {
     let (model, setup, samples) = tiny();
