@@ -77,6 +77,11 @@ impl<'a> Judge<'a> {
         (&self.character, crate::simulate::to_body_frame(&self.character, &rig::pose(&sample.joints)))
     }
 
+    /// Poses per second of the clips, as they were sampled.
+    pub fn rate(&self) -> f64 {
+        self.setup.description.rate
+    }
+
     /// The pose a share `t` of the way from `a` to `b`.
     pub fn between(&self, a: &Sample, b: &Sample, t: f64) -> Pose {
         crate::simulate::between(&self.character, &rig::pose(&a.joints), &rig::pose(&b.joints), t)

@@ -37,8 +37,8 @@ const MEANINGS: [(&str, &str); 9] = [
     ),
     (
         "slow",
-        "The same acceleration in slow motion: a second of 30 frames from one unseen pose to the next of its clip, every \
-      joint turning evenly. The repair of penetration must not make it tremble.",
+        "The same acceleration in slow motion: from one unseen pose to the next of its clip at a quarter of its speed, \
+      30 frames a second, every joint turning evenly. The repair of penetration must not make it tremble.",
     ),
     (
         "mm per metre",
