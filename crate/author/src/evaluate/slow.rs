@@ -10,7 +10,7 @@ use crate::rig;
 const SLOWER: f64 = 4.0;
 /// Frames per second.
 pub(super) const RATE: f64 = 30.0;
-/// Frames in all, about: so many of the pairs of poses, spread over all.
+/// Frames in all, about: so many of the pairs of poses, spread over all. Poses further apart than that are moved between faster.
 const FRAMES: usize = 1200;
 
 /// The frames in between, without truth; each pair of poses is a clip of its own.
@@ -18,7 +18,7 @@ pub(super) fn motion(judge: &Judge, samples: &[&Sample]) -> Vec<Sample> {
     let same_clip = |pair: &&[&Sample]| pair[0].record.clip == pair[1].record.clip;
     let steps = |pair: &[&Sample]| {
         let seconds = pair[1].record.frame.abs_diff(pair[0].record.frame) as f64 / judge.rate();
-        ((seconds * SLOWER * RATE).round() as usize).max(2)
+        ((seconds * SLOWER * RATE).round() as usize).clamp(2, FRAMES)
     };
     let pairs: Vec<_> = samples.windows(2).filter(same_clip).map(|pair| (pair, steps(pair))).collect();
     let all: usize = pairs.iter().map(|(_, steps)| steps).sum();

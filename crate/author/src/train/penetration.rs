@@ -10,9 +10,8 @@ use crate::dataset::{Sample, Setup};
 use crate::motion::{has_limbs, mixed};
 use crate::rig::{Character, Pose, joints, pose};
 use crate::simulate::is_sound;
-use ctsn_core::cpu::closest::{Posed, Rings};
-use ctsn_core::cpu::{Level, collide, normals, skin};
-use ctsn_core::device::Space;
+use ctsn_core::cpu::Cpu;
+use ctsn_core::device::{Device, Space};
 use ctsn_core::model::{Body, HostModel};
 use ctsn_core::network::Streams;
 use ctsn_core::pose::BodyFrame;
@@ -28,9 +27,10 @@ pub(super) const UNLABELLED: usize = 4;
 /// The body of one pose after the other; one per thread.
 pub(super) struct Penetration {
     body: Body<Vec<f32>, Vec<u32>>,
-    positions: Vec<f32>,
+    cpu: Cpu,
+    posed: Vec<f32>,
     normals: Vec<f32>,
-    rings: Rings,
+    cloth: Vec<f32>,
     push: Vec<f32>,
 }
 
@@ -38,26 +38,23 @@ impl Penetration {
     /// Room for a body and its cloth.
     pub fn new(body: &Body<Vec<f32>, Vec<u32>>, n: usize) -> Self {
         let room = |vertices: usize| vec![0.0; vertices * 3];
-        let (positions, normals) = (room(body.vertices), room(body.vertices));
-        Self { body: body.clone(), positions, normals, rings: Rings::default(), push: room(n) }
+        let (posed, normals) = (room(body.vertices), room(body.vertices));
+        Self { body: body.clone(), cpu: Cpu::new(), posed, normals, cloth: room(n), push: room(n) }
     }
 
     /// Poses the body.
     pub fn pose(&mut self, frame: &BodyFrame) {
-        let Self { body, positions, normals, rings, .. } = self;
-        let Body { rest, skin, triangles, fans, .. } = body;
-        skin::skin(Level::new(), rest, &skin.joints, &skin.weights, &frame.transforms, Space::Body, positions);
-        normals::normals(positions, triangles, normals);
-        rings.pose(positions.as_chunks().0, &fans.offsets, fans.corners.as_chunks().0);
+        let Self { body, cpu, posed, normals, .. } = self;
+        cpu.skin(&body.rest, &body.skin, &frame.transforms, Space::Body, posed);
+        cpu.normals(posed, &body.triangles, normals);
     }
 
-    /// Mean over the vertices of what `cloth` [n, 3], body frame, lacks to the gap around the body, metres; its gradient times `scale` and
+    /// Mean over the vertices of what `predicted` [n, 3], body frame, lacks to the gap around the body, metres; its gradient times `scale` and
     /// [`WEIGHT`] is added to g [n, 3].
-    pub fn loss(&mut self, cloth: &[f32], scale: f32, g: &mut [f32]) -> f32 {
-        let Self { body, positions, normals, rings, push } = self;
-        let (offsets, fans) = (&body.fans.offsets, body.fans.corners.as_chunks().0);
-        let (positions, normals) = (positions.as_chunks().0, normals.as_chunks().0);
-        collide::collide(Level::new(), cloth, &Posed { positions, normals, offsets, fans, rings }, &body.seeds, push);
+    pub fn loss(&mut self, predicted: &[f32], scale: f32, g: &mut [f32]) -> f32 {
+        let Self { body, cpu, posed, normals, cloth, push } = self;
+        cloth.copy_from_slice(predicted);
+        cpu.collide(body, posed, normals, cloth, push);
         let count = cloth.len() as f32 / 3.0;
         let mut total = 0.0_f64;
         for (push, g) in push.as_chunks::<3>().0.iter().zip(g.as_chunks_mut::<3>().0) {
@@ -103,7 +100,7 @@ impl Unlabelled {
     pub fn draw(&self, model: &HostModel, step: usize) -> Result<Vec<Item>> {
         let frames: Vec<&Pose> = self.frames.iter().collect();
         // Other numbers than those of simulated mixtures, which start at nought.
-        let first = (self.seed as usize + 1) << 40;
+        let first = (self.seed as usize).wrapping_add(1) << 40;
         let item = |i| {
             let pose = mixed(&self.character, &frames, first | (step * self.count + i));
             Item::posed(model, &joints(&pose))
