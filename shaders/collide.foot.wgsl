@@ -11,6 +11,8 @@ struct Params {
     steepest: f32,
     sliver: f32,
     folded: f32,
+    // Where buried vertices are.
+    away: f32,
     // The body's first vertices, spread evenly over it.
     landmarks: u32,
     free: f32,
@@ -19,7 +21,7 @@ struct Params {
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
-// Posed body: positions and unit normals [b, 3].
+// Exposed body: positions and unit normals [b, 3].
 @group(0) @binding(1) var<storage, read> body: array<f32>;
 @group(0) @binding(2) var<storage, read> body_normals: array<f32>;
 // First triangle around each body vertex [b + 1], and the other two corners of each.
@@ -47,6 +49,12 @@ fn is_elsewhere(place: f32, found: f32) -> bool {
     return place > bound * bound;
 }
 
+// The way from a to a vertex; none where that is buried.
+fn edge(a: vec3<f32>, vertex: u32) -> vec3<f32> {
+    let way = position(vertex) - a;
+    return select(way, vec3(0.0), body[3u * vertex] >= params.away);
+}
+
 // The displacement to the gap, and the squared distance to the body around a place. (Parted in two functions, or with the highest corner
 // sought here instead of on the walk, a software adapter took 5 ms instead of 2.)
 fn push_from(point: vec3<f32>, place: Place) -> vec4<f32> {
@@ -59,8 +67,8 @@ fn push_from(point: vec3<f32>, place: Place) -> vec4<f32> {
     var foot = vec3(0.0);
     var corners = vec2(vertex);
     for (var k = offsets[vertex]; k < offsets[vertex + 1u]; k++) {
-        let ab = position(fans[k].x) - a;
-        let ac = position(fans[k].y) - a;
+        let ab = edge(a, fans[k].x);
+        let ac = edge(a, fans[k].y);
         let spot = closest(point - a, ab, ac);
         if (spot.x < best.x) {
             best = spot;
@@ -74,7 +82,7 @@ fn push_from(point: vec3<f32>, place: Place) -> vec4<f32> {
     let up = steep / max(length, 1e-30);
     let along_up = dot(point - foot, up);
     let beside = least > params.gap * params.gap && abs(along_up) < params.steepest * sqrt(least);
-    let found = best.x < 3.4e38 && length > params.folded && !beside && along_up >= -params.depth;
+    let found = best.x < 3.4e38 && a.x < params.away && length > params.folded && !beside && along_up >= -params.depth;
     let height = select(along_up, sqrt(least), along_up > 0.0);
     return select(vec4(0.0, 0.0, 0.0, 3.4e38), vec4(up * max(params.gap - height, 0.0), least), found);
 }

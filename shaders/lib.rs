@@ -78,6 +78,8 @@ params! {
     Blend { numbers: u32, count: u32, stride: u32 }
     /// `Params` of body_frame.wgsl.
     BodyFrame { joints: u32, root: u32, yaw: u32 }
+    /// `Params` of bury.wgsl.
+    Bury { vertices: u32, first: u32, end: u32, above: f32, least: f32, away: f32 }
     /// `Params` of collide.wgsl and settle.wgsl.
     Collide {
         vertices: u32,
@@ -88,6 +90,7 @@ params! {
         steepest: f32,
         sliver: f32,
         folded: f32,
+        away: f32,
         landmarks: u32,
         free: f32,
         elsewhere: f32,
@@ -134,7 +137,9 @@ shaders! {
     BLEND: Blend, "blend" + [], [Read Read Read Read Write Write], [64, 1];
     /// Joints, inverse bind, standard -> transforms, pose vector.
     BODY_FRAME: BodyFrame, "body_frame" + [], [Read Read Read Write Write], [64, 1];
-    /// Body, its normals, offsets, fans, seeds, positions -> push.
+    /// Body, its normals, areas -> exposed.
+    BURY: Bury, "bury" + [], [Read Read Read Write], [1, 1];
+    /// Exposed body, its normals, offsets, fans, seeds, positions -> push.
     COLLIDE: Collide, "collide" + ["collide.foot", "collide.walk", "collide.triangle"], [Read Read Read Read Read Read Write], [64, 1];
     /// V, T_C -> nodes, potentials.
     FEATURES: Features, "features" + [], [Read Read Write Write], [64, 1];
@@ -144,7 +149,7 @@ shaders! {
     LINEAR_ROW: Linear, "linear.row" + [], [Read Read Read Write], [8, 1];
     /// Positions, offsets, corners -> normals.
     NORMALS: Normals, "normals" + [], [Read Read Read Write], [64, 1];
-    /// Body, its normals, offsets, fans, seeds, displacement -> positions.
+    /// Exposed body, its normals, offsets, fans, seeds, displacement -> positions.
     SETTLE: Collide, "settle" + ["collide.foot", "collide.walk", "collide.triangle"], [Read Read Read Read Read Read Write], [64, 1];
     /// Rest, joints, weights, transforms -> positions.
     SKIN: Skin, "skin" + [], [Read Read Read Read Write], [64, 1];

@@ -3,3 +3,4 @@
 pub mod finite;
 pub mod golden;
 pub mod random;
+pub mod sphere;

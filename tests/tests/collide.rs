@@ -5,45 +5,17 @@ use ctsn_core::cpu::{
     closest::{DEPTH, GAP},
     spread::FOLLOW,
 };
-use ctsn_core::model::{Body, Fans, HostModel, Skin};
+use ctsn_core::model::{Body, HostModel, Skin};
 use ctsn_core::topology::Graph;
 use ctsn_core::{Predictor, Streams};
 use ctsn_tests::random::{self, Shape};
+use ctsn_tests::sphere::{AROUND, RADIUS, RINGS, sphere, sphere_of};
 use fastrand::Rng;
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::{wasm_bindgen_test as test, wasm_bindgen_test_configure};
 
 #[cfg(target_arch = "wasm32")]
 wasm_bindgen_test_configure!(run_in_browser);
-
-/// Radius of the body, metres.
-const RADIUS: f32 = 0.05;
-/// Vertices around and from pole to pole.
-const AROUND: u32 = 24;
-const RINGS: u32 = 13;
-
-/// A sphere as a closed mesh: positions [b, 3], triangles.
-fn sphere() -> (Vec<f32>, Vec<u32>) {
-    let ring = |row: u32| {
-        let polar = std::f32::consts::PI * row as f32 / RINGS as f32;
-        (0..AROUND).flat_map(move |i| {
-            let angle = std::f32::consts::TAU * i as f32 / AROUND as f32;
-            [polar.sin() * angle.cos(), polar.cos(), polar.sin() * angle.sin()].map(|c| c * RADIUS)
-        })
-    };
-    let mut positions = vec![0.0, RADIUS, 0.0, 0.0, -RADIUS, 0.0];
-    positions.extend((1..RINGS).flat_map(ring));
-    let at = |row: u32, i: u32| 2 + (row - 1) * AROUND + i % AROUND;
-    let mut triangles = Vec::new();
-    for i in 0..AROUND {
-        triangles.extend([0, at(1, i + 1), at(1, i), 1, at(RINGS - 1, i), at(RINGS - 1, i + 1)]);
-        for row in 1..RINGS - 1 {
-            let [a, b, c, d] = [at(row, i), at(row, i + 1), at(row + 1, i), at(row + 1, i + 1)];
-            triangles.extend([a, b, c, b, d, c]);
-        }
-    }
-    (positions, triangles)
-}
 
 /// A cloth of loose points, `places` [n, 3], that follows one joint with a body of these positions and triangles.
 fn model(rng: &mut Rng, places: Vec<f32>, positions: Vec<f32>, triangles: Vec<u32>) -> HostModel {
@@ -56,14 +28,8 @@ fn model(rng: &mut Rng, places: Vec<f32>, positions: Vec<f32>, triangles: Vec<u3
     model.graph = Graph::new(n, &[]);
     model.rig.inverse_bind = vec![[1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0]];
     let vertices = positions.len() / 3;
-    model.body = Some(Body {
-        vertices,
-        skin: follow(vertices),
-        rest: positions,
-        fans: Fans::new(vertices, &triangles),
-        triangles,
-        seeds: (0..4 * n).map(|_| rng.u32(..vertices as u32)).collect(),
-    });
+    let seeds = (0..4 * n).map(|_| rng.u32(..vertices as u32)).collect();
+    model.body = Some(Body::new(positions, follow(vertices), triangles, seeds));
     model
 }
 
@@ -145,6 +111,42 @@ fn cloth_that_hangs_free_comes_out_of_what_it_never_met() {
         }
     }
     assert!(inside > 50, "{inside} inside");
+}
+
+/// A sphere with a smaller one inside, whose vertices follow the landmarks; the cloth, just outside the smaller one, has all its seeds
+/// there but the last.
+fn buried(rng: &mut Rng) -> HostModel {
+    const LANDMARKS: usize = 64;
+    let (outer, outer_faces) = sphere_of(2.0 * RADIUS, AROUND, RINGS);
+    let (inner, inner_faces) = sphere_of(RADIUS, 10, 7);
+    let count = (inner.len() / 3) as u32;
+    assert!(count <= ctsn_core::cpu::bury::BURIABLE as u32);
+    let raised = inner.chunks_exact(3).flat_map(|p| [p[0], p[1] + RAISED, p[2]]);
+    let positions = outer.iter().copied().take(3 * LANDMARKS).chain(raised).chain(outer[3 * LANDMARKS..].to_vec());
+    let place = |i: &u32| if (*i as usize) < LANDMARKS { *i } else { *i + count };
+    let triangles = outer_faces.iter().map(place).chain(inner_faces.iter().map(|i| i + LANDMARKS as u32));
+    let places = (0..300).flat_map(|_| {
+        let way: [f32; 3] = std::array::from_fn(|_| rng.f32() - 0.5);
+        let [x, y, z] = way.map(|c| c * 1.05 * RADIUS / length(&way));
+        [x, y + RAISED, z]
+    });
+    let (places, positions, triangles) = (places.collect(), positions.collect(), triangles.collect());
+    let mut model = model(rng, places, positions, triangles);
+    let seeds = (0..300).flat_map(|_| [(); 3].map(|()| LANDMARKS as u32 + rng.u32(..count)).into_iter().chain([0]));
+    model.body.as_mut().expect("a body").seeds = seeds.collect();
+    model
+}
+
+/// How far the middle of the smaller sphere is above that of the other, metres.
+const RAISED: f32 = 0.03;
+
+#[test]
+fn cloth_beside_skin_that_is_inside_another_part_comes_out_of_both() {
+    let model = buried(&mut Rng::with_seed(13));
+    let sagitta = 2.0 * RADIUS * (1.0 - (std::f32::consts::PI / RINGS as f32).cos());
+    for (place, found) in model.rest.chunks_exact(3).zip(predict(&model).chunks_exact(3)) {
+        assert!(length(found) > 2.0 * RADIUS - sagitta, "{place:?} came to {found:?}");
+    }
 }
 
 #[test]
@@ -242,7 +244,9 @@ fn on_gpu(gpu: &ctsn_gpu::Gpu, model: &HostModel) -> Vec<f32> {
 #[cfg(not(target_arch = "wasm32"))]
 #[test]
 fn the_gpu_finds_what_cloth_never_met() {
-    for model in [two_spheres(&mut Rng::with_seed(10)), dragged(&mut Rng::with_seed(12))] {
+    let models =
+        [two_spheres(&mut Rng::with_seed(10)), dragged(&mut Rng::with_seed(12)), buried(&mut Rng::with_seed(14))];
+    for model in models {
         let found = on_gpu(&gpu(), &model);
         let difference = predict(&model).iter().zip(found).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
         assert!(difference <= 1e-4, "{difference}");

@@ -121,8 +121,8 @@ fn every_operation_has_its_twins() {
     for operation in &operations {
         assert!(has(&format!("crate/core/src/cpu/{operation}.rs")), "{operation} has no file in crate/core/src/cpu");
         let gradient = has(&format!("crate/author/src/train/gradient/{operation}.rs"));
-        let wanted =
-            !["body_frame", "features", "normals", "collide", "spread", "settle", "surface"].contains(operation);
+        let wanted = !["body_frame", "features", "normals", "bury", "collide", "spread", "settle", "surface"]
+            .contains(operation);
         assert_eq!(gradient, wanted, "{operation}: a file in crate/author/src/train/gradient");
         assert!(has(&format!("shaders/{operation}.wgsl")), "{operation} has no shader");
     }

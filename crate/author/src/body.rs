@@ -4,14 +4,18 @@
 use crate::Result;
 use crate::dataset::{Sample, Setup};
 use crate::garment::apart;
-use crate::rig::{Character, Mesh, Pose, pose, vertices};
+use crate::rig::{Character, Mesh, Pose, numbers, pose, vertices};
 use crate::simulate::{covering, felt, hull, to_body_frame};
+use ctsn_core::cpu::Level;
+use ctsn_core::cpu::bury::{Dipoles, bury, is_away};
 use ctsn_core::cpu::collide::LANDMARKS;
-use ctsn_core::model::{Body, Fans, Skin};
+use ctsn_core::cpu::normals::normals;
+use ctsn_core::model::{Body, Skin, areas};
 use ctsn_core::topology::Graph;
 use glam::DVec3;
 use kiddo::{ImmutableKdTree, SquaredEuclidean};
 use rayon::prelude::*;
+use std::cmp::Reverse;
 use std::collections::BTreeMap;
 
 /// Vertices of the whole skin, about: twice as many triangles.
@@ -21,6 +25,10 @@ const VERTICES: usize = 2600;
 const POSES: usize = 600;
 /// Poses that the skin is raised for, spread over the samples.
 const BENT: usize = 60;
+/// Poses that are searched for skin inside another part of the body, spread over the samples.
+const FOLDED: usize = 150;
+/// Cloth that near to a vertex inside another part of the body would be kept out of it, metres.
+const BESIDE: f64 = 0.03;
 /// Cloth further from the skin says nothing about it, metres.
 const REACH: f64 = 0.15;
 /// Rings of vertices around what the cloth came near that are kept: repaired cloth must not meet the border.
@@ -54,7 +62,28 @@ pub fn body(setup: &Setup, samples: &[&Sample]) -> Result<Body<Vec<f32>, Vec<u32
     let missed = |(sample, seen): (&&&Sample, &Vec<_>)| missed(&skin, &around, &seeds, sample, seen);
     let missed: Vec<Vec<Option<u32>>> = poses.par_iter().zip(&seen).map(missed).collect();
     add_other_side(&mut seeds, &missed, &Graph::new(setup.template.len() / 3, &setup.triangles));
-    Ok(cut(&skin, &visits, &seeds))
+    Ok(cut(&skin, &visits, &seeds, &buried(&skin, &every(FOLDED).collect::<Vec<_>>())))
+}
+
+/// How many cloth vertices were beside each vertex of the skin while that was inside another part of the body.
+fn buried(skin: &Character, poses: &[&&Sample]) -> Vec<usize> {
+    let count = skin.body.positions.len();
+    let all = numbers(&skin.body.positions);
+    let areas = areas(&all, skin.body.triangles.as_flattened());
+    let beside = |sample: &&&Sample| {
+        let posed = numbers(&skin.pose_body(&framed(skin, sample)));
+        let (mut up, mut exposed) = (posed.clone(), posed.clone());
+        normals(&posed, skin.body.triangles.as_flattened(), &mut up);
+        bury(Level::new(), &posed, &up, &areas, 0..count, &mut Dipoles::default(), &mut exposed);
+        let cloth = vertices(&sample.truth);
+        let near = |(place, seen): (DVec3, &[f32; 3])| match is_away(seen) {
+            true => cloth.iter().filter(|vertex| vertex.distance(place) < BESIDE).count(),
+            false => 0,
+        };
+        vertices(&posed).into_iter().zip(exposed.as_chunks().0).map(near).collect()
+    };
+    let sum = |a: Vec<usize>, b: Vec<usize>| a.iter().zip(&b).map(|(a, b)| a + b).collect();
+    poses.par_iter().map(beside).reduce(|| vec![0; count], sum)
 }
 
 /// Drops triangles that some pose draws long: a coarse skin joins legs that nearly touch in the canonical pose, and spans what is between
@@ -173,7 +202,12 @@ fn landmarks_first(positions: &[DVec3], list: &mut [usize]) {
 }
 
 /// The part of the skin that was seen, [`RINGS`] rings around it included.
-fn cut(skin: &Character, visits: &[BTreeMap<u32, usize>], seeds: &[[u32; SEEDS]]) -> Body<Vec<f32>, Vec<u32>> {
+fn cut(
+    skin: &Character,
+    visits: &[BTreeMap<u32, usize>],
+    seeds: &[[u32; SEEDS]],
+    buried: &[usize],
+) -> Body<Vec<f32>, Vec<u32>> {
     let Mesh { positions, triangles } = &skin.body;
     let graph = Graph::new(positions.len(), triangles.as_flattened());
     let mut kept = vec![false; positions.len()];
@@ -186,6 +220,9 @@ fn cut(skin: &Character, visits: &[BTreeMap<u32, usize>], seeds: &[[u32; SEEDS]]
     }
     let mut list: Vec<usize> = (0..kept.len()).filter(|i| kept[*i]).collect();
     landmarks_first(positions, &mut list);
+    // Then what is inside another part of the body most; the others as they were.
+    let others = LANDMARKS.min(list.len());
+    list[others..].sort_by_key(|vertex| Reverse(buried[*vertex]));
     let mut place = vec![0; kept.len()];
     list.iter().enumerate().for_each(|(new, old)| place[*old] = new as u32);
     let whole = triangles.iter().filter(|triangle| triangle.iter().all(|i| kept[*i as usize]));
@@ -198,14 +235,8 @@ fn cut(skin: &Character, visits: &[BTreeMap<u32, usize>], seeds: &[[u32; SEEDS]]
         slots.joints.resize((row + 1) * width, 0);
         slots.weights.resize((row + 1) * width, 0.0);
     }
-    Body {
-        vertices: list.len(),
-        rest: list.iter().flat_map(|i| positions[*i].as_vec3().to_array()).collect(),
-        skin: slots,
-        fans: Fans::new(list.len(), &triangles),
-        triangles,
-        seeds: seeds.as_flattened().iter().map(|seed| place[*seed as usize]).collect(),
-    }
+    let rest = list.iter().flat_map(|i| positions[*i].as_vec3().to_array()).collect();
+    Body::new(rest, slots, triangles, seeds.as_flattened().iter().map(|seed| place[*seed as usize]).collect())
 }
 
 #[cfg(test)]

@@ -92,12 +92,20 @@ pub trait Device {
     );
     /// positions [n, 3], triangles [t, 3] -> area-weighted unit normals [n, 3].
     fn normals(&mut self, positions: &Self::Buffer, triangles: &[u32], normals: &mut Self::Buffer);
-    /// The body's posed positions and normals [b, 3], cloth positions [n, 3] -> push [n, 3], the displacement that brings each cloth
+    /// The body's posed positions and normals [b, 3] -> exposed [b, 3]: the positions, those inside another part of the body far away.
+    fn bury(
+        &mut self,
+        body: &Body<Self::Buffer, Self::Indices>,
+        posed: &Self::Buffer,
+        normals: &Self::Buffer,
+        exposed: &mut Self::Buffer,
+    );
+    /// The body's exposed positions and normals [b, 3], cloth positions [n, 3] -> push [n, 3], the displacement that brings each cloth
     /// vertex to the gap above the body; zero where there is room.
     fn collide(
         &mut self,
         body: &Body<Self::Buffer, Self::Indices>,
-        posed: &Self::Buffer,
+        exposed: &Self::Buffer,
         normals: &Self::Buffer,
         positions: &Self::Buffer,
         push: &mut Self::Buffer,
@@ -110,12 +118,12 @@ pub trait Device {
         before: &Self::Buffer,
         after: &mut Self::Buffer,
     );
-    /// The body's posed positions and normals [b, 3]; displacement [n, 3] is added to positions [n, 3], and what it carried into another
+    /// The body's exposed positions and normals [b, 3]; displacement [n, 3] is added to positions [n, 3], and what it carried into another
     /// part of the body is brought to the gap.
     fn settle(
         &mut self,
         body: &Body<Self::Buffer, Self::Indices>,
-        posed: &Self::Buffer,
+        exposed: &Self::Buffer,
         normals: &Self::Buffer,
         displacement: &Self::Buffer,
         positions: &mut Self::Buffer,

@@ -85,6 +85,8 @@ impl Device for Count {
 
     fn normals(&mut self, _: &usize, _: &[u32], _: &mut usize) {}
 
+    fn bury(&mut self, _: &Body<usize, usize>, _: &usize, _: &usize, _: &mut usize) {}
+
     fn collide(&mut self, _: &Body<usize, usize>, _: &usize, _: &usize, _: &usize, _: &mut usize) {}
 
     fn spread(&mut self, _: &Graph<usize>, _: &usize, _: &usize, _: &mut usize) {}

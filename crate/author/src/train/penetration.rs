@@ -30,6 +30,7 @@ pub(super) struct Penetration {
     cpu: Cpu,
     posed: Vec<f32>,
     normals: Vec<f32>,
+    exposed: Vec<f32>,
     cloth: Vec<f32>,
     push: Vec<f32>,
 }
@@ -38,23 +39,24 @@ impl Penetration {
     /// Room for a body and its cloth.
     pub fn new(body: &Body<Vec<f32>, Vec<u32>>, n: usize) -> Self {
         let room = |vertices: usize| vec![0.0; vertices * 3];
-        let (posed, normals) = (room(body.vertices), room(body.vertices));
-        Self { body: body.clone(), cpu: Cpu::new(), posed, normals, cloth: room(n), push: room(n) }
+        let [posed, normals, exposed] = std::array::from_fn(|_| room(body.vertices));
+        Self { body: body.clone(), cpu: Cpu::new(), posed, normals, exposed, cloth: room(n), push: room(n) }
     }
 
     /// Poses the body.
     pub fn pose(&mut self, frame: &BodyFrame) {
-        let Self { body, cpu, posed, normals, .. } = self;
+        let Self { body, cpu, posed, normals, exposed, .. } = self;
         cpu.skin(&body.rest, &body.skin, &frame.transforms, Space::Body, posed);
         cpu.normals(posed, &body.triangles, normals);
+        cpu.bury(body, posed, normals, exposed);
     }
 
     /// Mean over the vertices of what `predicted` [n, 3], body frame, lacks to the gap around the body, metres; its gradient times `scale` and
     /// [`WEIGHT`] is added to g [n, 3].
     pub fn loss(&mut self, predicted: &[f32], scale: f32, g: &mut [f32]) -> f32 {
-        let Self { body, cpu, posed, normals, cloth, push } = self;
+        let Self { body, cpu, normals, exposed, cloth, push, .. } = self;
         cloth.copy_from_slice(predicted);
-        cpu.collide(body, posed, normals, cloth, push);
+        cpu.collide(body, exposed, normals, cloth, push);
         let count = cloth.len() as f32 / 3.0;
         let mut total = 0.0_f64;
         for (push, g) in push.as_chunks::<3>().0.iter().zip(g.as_chunks_mut::<3>().0) {

@@ -260,13 +260,16 @@ impl Device for Tape {
         // Not part of the loss (network.md §6), so there is nothing to remember.
     }
 
-    fn collide(&mut self, _: &Body<Id, IndexId>, _posed: &Id, _normals: &Id, _positions: &Id, _push: &mut Id) {
+    fn bury(&mut self, _: &Body<Id, IndexId>, _posed: &Id, _normals: &Id, _exposed: &mut Id) {}
+
+    fn collide(&mut self, _: &Body<Id, IndexId>, _exposed: &Id, _normals: &Id, _positions: &Id, _push: &mut Id) {
         // Nor is repair.
     }
 
     fn spread(&mut self, _graph: &Graph<IndexId>, _push: &Id, _before: &Id, _after: &mut Id) {}
 
-    fn settle(&mut self, _: &Body<Id, IndexId>, _posed: &Id, _normals: &Id, _displacement: &Id, _positions: &mut Id) {}
+    fn settle(&mut self, _: &Body<Id, IndexId>, _exposed: &Id, _normals: &Id, _displacement: &Id, _positions: &mut Id) {
+    }
 
     fn surface(&mut self, _vertex: &[u32], _positions: &Id, _normals: &Id, _drawn: &mut Drawn<Id>) {
         // Nor is this.

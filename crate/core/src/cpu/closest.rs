@@ -1,5 +1,6 @@
 //! The closest point of a posed body, searched over its surface. Twins: shaders/collide.foot.wgsl, collide.walk.wgsl.
 
+use super::bury::is_away;
 use super::eight::{closest_on_triangles, dot, from, splat};
 use fearless_simd::{Simd, SimdBase, SimdMask, f32x8};
 use glam::Vec3;
@@ -18,7 +19,7 @@ pub const FOLDED: f32 = 1e-3;
 
 /// The posed body: positions and unit normals [b, 3], and the triangles around each vertex.
 pub struct Posed<'a> {
-    /// Positions, metres [b, 3].
+    /// Positions, metres [b, 3]; those of [`is_away`] are not looked at.
     pub positions: &'a [[f32; 3]],
     /// Unit vertex normals [b, 3].
     pub normals: &'a [[f32; 3]],
@@ -77,7 +78,9 @@ impl Ring {
         self.vertices = [vertex as u32; RING];
         self.vertices.iter_mut().zip(fan).for_each(|(near, corners)| *near = corners[0]);
         for (place, near) in self.vertices.iter().enumerate() {
-            (0..3).for_each(|axis| self.positions[axis][place] = positions[*near as usize][axis]);
+            let near = &positions[*near as usize];
+            let near = if is_away(near) { &positions[vertex] } else { near };
+            (0..3).for_each(|axis| self.positions[axis][place] = near[axis]);
         }
     }
 }
@@ -213,12 +216,18 @@ impl Posed<'_> {
     #[inline(always)]
     fn closest<S: Simd>(&self, simd: S, point: Vec3, vertex: u32) -> Option<(Vec3, Vec3)> {
         let a = self.position(vertex);
+        if is_away(&a.to_array()) {
+            return None;
+        }
         let mut best = (f32::INFINITY, [vertex; 2], [0.0; 2]);
         for (ring, fan) in self.rings.of(vertex).iter().zip(self.fan(vertex).chunks(RING)) {
             // Places without a triangle hold one without extent, no closer than the vertex itself.
             let mut third = [[a.x; RING], [a.y; RING], [a.z; RING]];
             for (place, [_, corner]) in fan.iter().enumerate() {
-                [third[0][place], third[1][place], third[2][place]] = self.positions[*corner as usize];
+                let corner = &self.positions[*corner as usize];
+                if !is_away(corner) {
+                    [third[0][place], third[1][place], third[2][place]] = *corner;
+                }
             }
             let (ab, ac) = (from(simd, a, &ring.positions), from(simd, a, &third));
             let [squared, b, c] = closest_on_triangles(simd, splat(simd, point - a), ab, ac);
@@ -229,7 +238,11 @@ impl Posed<'_> {
             }
         }
         let (_, [second, third], [b, c]) = best;
-        let way = (self.position(second) - a) * b + (self.position(third) - a) * c;
+        let edge = |corner: u32| match &self.positions[corner as usize] {
+            corner if is_away(corner) => Vec3::ZERO,
+            corner => Vec3::from_array(*corner) - a,
+        };
+        let way = edge(second) * b + edge(third) * c;
         let sum = self.normal(vertex) * (1.0 - b - c) + self.normal(second) * b + self.normal(third) * c;
         // Opposite normals: a body folded onto itself has no outside there.
         let length = sum.length();

@@ -34,7 +34,8 @@ fn kernel<S: Simd>(simd: S, positions: &[f32], body: &Posed, seeds: &[u32], push
 }
 
 /// The displacement that brings `point` to the gap. Where the cloth comes near another part of the body than its own, as in an armpit, the
-/// nearer part decides. So it does where cloth hangs free.
+/// nearer part decides. So it does where cloth hangs free. (Where the part it is deeper inside of decides, as of a union of parts, a search that
+/// ended on the far side of a limb threw cloth 47 mm off, and a skirt trembled by 11 % more instead of 1.)
 #[inline(always)]
 fn displacement<S: Simd>(simd: S, point: Vec3, body: &Posed, seeds: &[u32], landmarks: &Landmarks) -> Vec3 {
     let (own, other) = parted(seeds);

@@ -4,6 +4,7 @@
 pub mod attend;
 pub mod blend;
 pub mod body_frame;
+pub mod bury;
 pub mod closest;
 pub mod collide;
 pub mod eight;
@@ -30,6 +31,7 @@ pub struct Cpu {
     level: Level,
     scratch: attend::Scratch,
     rings: closest::Rings,
+    dipoles: bury::Dipoles,
 }
 
 impl Cpu {
@@ -40,7 +42,8 @@ impl Cpu {
 
     /// A chosen level.
     pub fn with_level(level: Level) -> Self {
-        Self { level, scratch: attend::Scratch::default(), rings: closest::Rings::default() }
+        let (scratch, rings, dipoles) = Default::default();
+        Self { level, scratch, rings, dipoles }
     }
 }
 
@@ -126,15 +129,20 @@ impl Device for Cpu {
         normals::normals(positions, triangles, normals);
     }
 
+    fn bury(&mut self, body: &Body<Vec<f32>, Vec<u32>>, posed: &Vec<f32>, normals: &Vec<f32>, exposed: &mut Vec<f32>) {
+        let range = bury::buriable(body.vertices);
+        bury::bury(self.level, posed, normals, &body.areas, range, &mut self.dipoles, exposed);
+    }
+
     fn collide(
         &mut self,
         body: &Body<Vec<f32>, Vec<u32>>,
-        posed: &Vec<f32>,
+        exposed: &Vec<f32>,
         normals: &Vec<f32>,
         positions: &Vec<f32>,
         push: &mut Vec<f32>,
     ) {
-        collide::collide(self.level, positions, &at(body, posed, normals, &mut self.rings), &body.seeds, push);
+        collide::collide(self.level, positions, &at(body, exposed, normals, &mut self.rings), &body.seeds, push);
     }
 
     fn spread(&mut self, graph: &Graph<Vec<u32>>, push: &Vec<f32>, before: &Vec<f32>, after: &mut Vec<f32>) {
@@ -144,12 +152,12 @@ impl Device for Cpu {
     fn settle(
         &mut self,
         body: &Body<Vec<f32>, Vec<u32>>,
-        posed: &Vec<f32>,
+        exposed: &Vec<f32>,
         normals: &Vec<f32>,
         displacement: &Vec<f32>,
         positions: &mut Vec<f32>,
     ) {
-        settle::settle(self.level, displacement, &at(body, posed, normals, &mut self.rings), &body.seeds, positions);
+        settle::settle(self.level, displacement, &at(body, exposed, normals, &mut self.rings), &body.seeds, positions);
     }
 
     fn surface(&mut self, vertex: &[u32], positions: &Vec<f32>, normals: &Vec<f32>, drawn: &mut Drawn<Vec<f32>>) {

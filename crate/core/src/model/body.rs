@@ -6,6 +6,7 @@ use super::Skin;
 use super::write::Writer;
 use crate::Result;
 use crate::file::Tensors;
+use glam::Vec3;
 
 /// The body's mesh, and where each cloth vertex looks for it.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,6 +19,8 @@ pub struct Body<B, I> {
     pub skin: Skin<B, I>,
     /// Triangles [t, 3].
     pub triangles: Vec<u32>,
+    /// Canonical area of each vertex, square metres: a third of its triangles' [b].
+    pub areas: B,
     /// The triangles around each body vertex.
     pub fans: Fans<I>,
     /// Body vertices near which each cloth vertex was in training [n, s]; the last on the other side of a crease, or the first again.
@@ -48,7 +51,25 @@ impl Fans<Vec<u32>> {
     }
 }
 
+/// Area of each vertex: a third of its triangles'; positions [b, 3], triangles [t, 3] -> [b].
+pub fn areas(positions: &[f32], triangles: &[u32]) -> Vec<f32> {
+    let mut areas = vec![0.0; positions.len() / 3];
+    for triangle in triangles.as_chunks::<3>().0 {
+        let [a, b, c] = triangle.map(|i| Vec3::from_slice(&positions[3 * i as usize..]));
+        let third = (b - a).cross(c - a).length() / 6.0;
+        triangle.iter().for_each(|i| areas[*i as usize] += third);
+    }
+    areas
+}
+
 impl Body<Vec<f32>, Vec<u32>> {
+    /// A body of vertices `rest` [b, 3], of `triangles` [t, 3] whose corners are below b; `seeds` [n, s] likewise.
+    pub fn new(rest: Vec<f32>, skin: Skin<Vec<f32>, Vec<u32>>, triangles: Vec<u32>, seeds: Vec<u32>) -> Self {
+        let vertices = rest.len() / 3;
+        let (areas, fans) = (areas(&rest, &triangles), Fans::new(vertices, &triangles));
+        Self { vertices, rest, skin, triangles, areas, fans, seeds }
+    }
+
     /// The body of a file for `n` cloth vertices and `joints` joints; `None` where it has none.
     pub(super) fn read(file: &Tensors, n: usize, joints: usize) -> Result<Option<Self>> {
         if !file.tensors.keys().any(|name| name.starts_with("body.")) {
@@ -66,8 +87,7 @@ impl Body<Vec<f32>, Vec<u32>> {
             let tensor = if width == 0 { "body.weights" } else { "body.seeds" }.to_owned();
             return Err(crate::Error::Shape { tensor, wanted, found: "none".to_owned() });
         }
-        let fans = Fans::new(count, &triangles);
-        Ok(Some(Self { vertices: count, rest, skin: Skin { joints: slots, weights, width }, triangles, fans, seeds }))
+        Ok(Some(Self::new(rest, Skin { joints: slots, weights, width }, triangles, seeds)))
     }
 
     /// Adds it to the file of a model of `n` cloth vertices.
@@ -93,6 +113,7 @@ impl<B, I> Body<B, I> {
             rest: values(&self.rest),
             skin: self.skin.map(values, indices),
             triangles: self.triangles.clone(),
+            areas: values(&self.areas),
             fans: Fans { offsets: indices(&self.fans.offsets), corners: indices(&self.fans.corners) },
             seeds: indices(&self.seeds),
         }

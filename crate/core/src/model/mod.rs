@@ -7,7 +7,7 @@ mod write;
 
 use crate::pose::Rig;
 use crate::topology::Graph;
-pub use body::{Body, Fans};
+pub use body::{Body, Fans, areas};
 pub use write::Storage;
 
 /// A model on the host, as a file holds it.

@@ -12,6 +12,8 @@ pub struct Collision<B> {
     pub body: B,
     /// Their unit normals [b, 3].
     pub normals: B,
+    /// The positions again, without those inside another part of the body [b, 3].
+    pub exposed: B,
     /// What each cloth vertex lacks to its gap [n, 3].
     pub push: B,
     /// Displacement of the cloth, one buffer per round [n, 3].
@@ -21,7 +23,13 @@ pub struct Collision<B> {
 impl<B> Collision<B> {
     pub(super) fn new(body: usize, n: usize, buffer: &mut impl FnMut(&str, usize) -> B) -> Self {
         let mut room = |vertices: usize| buffer("collide", vertices * 3);
-        Self { body: room(body), normals: room(body), push: room(n), displacement: [room(n), room(n)] }
+        Self {
+            body: room(body),
+            normals: room(body),
+            exposed: room(body),
+            push: room(n),
+            displacement: [room(n), room(n)],
+        }
     }
 }
 
@@ -30,9 +38,10 @@ pub fn collide<D: Device>(device: &mut D, model: &DeviceModel<D>, a: &mut Activa
     let (Some(body), Some(c)) = (&model.body, &mut a.collision) else { return };
     device.skin(&body.rest, &body.skin, &a.body_frame, Space::World, &mut c.body);
     device.normals(&c.body, &body.triangles, &mut c.normals);
-    device.collide(body, &c.body, &c.normals, &a.positions, &mut c.push);
+    device.bury(body, &c.body, &c.normals, &mut c.exposed);
+    device.collide(body, &c.exposed, &c.normals, &a.positions, &mut c.push);
     let [first, second] = &mut c.displacement;
     device.spread(&model.graph, &c.push, &c.push, first);
     device.spread(&model.graph, &c.push, first, second);
-    device.settle(body, &c.body, &c.normals, second, &mut a.positions);
+    device.settle(body, &c.exposed, &c.normals, second, &mut a.positions);
 }

@@ -2,7 +2,7 @@
 
 use super::{Id, IndexId, Recorder, Slot};
 use crate::pack::{self, whole};
-use ctsn_core::cpu::{closest, collide, eight, settle, spread};
+use ctsn_core::cpu::{bury, closest, collide, eight, settle, spread};
 use ctsn_core::device::{Activation, Device, Space};
 use ctsn_core::model::{Body, Layer, Linear, Reference, Sizes, Skin};
 use ctsn_core::network::Drawn;
@@ -175,9 +175,24 @@ impl Device for Recorder<'_> {
         self.dispatch(&shaders::NORMALS, params, &operands, [n, 1], *normals, 18 * triangles.len() + 9 * n);
     }
 
-    fn collide(&mut self, body: &Body<Id, IndexId>, posed: &Id, normals: &Id, positions: &Id, push: &mut Id) {
+    fn bury(&mut self, body: &Body<Id, IndexId>, posed: &Id, normals: &Id, exposed: &mut Id) {
+        let operands = [self.input(*posed), self.input(*normals), self.plain(body.areas), self.output(*exposed, 3, 3)];
+        let range = bury::buriable(body.vertices);
+        let params = shaders::Bury {
+            vertices: body.vertices as u32,
+            first: range.start as u32,
+            end: range.end as u32,
+            above: bury::ABOVE,
+            least: bury::least(),
+            away: bury::AWAY,
+        };
+        let flops = range.len() * body.vertices * 18;
+        self.dispatch(&shaders::BURY, params, &operands, [range.len().max(1), 1], *exposed, flops);
+    }
+
+    fn collide(&mut self, body: &Body<Id, IndexId>, exposed: &Id, normals: &Id, positions: &Id, push: &mut Id) {
         // A walk of about two steps of six neighbours, six triangles around its end.
-        self.search(&shaders::COLLIDE, body, [*posed, *normals, *positions], *push, WALK + 6 * 60);
+        self.search(&shaders::COLLIDE, body, [*exposed, *normals, *positions], *push, WALK + 6 * 60);
     }
 
     fn spread(&mut self, graph: &Graph<IndexId>, push: &Id, before: &Id, after: &mut Id) {
@@ -194,12 +209,12 @@ impl Device for Recorder<'_> {
         self.dispatch(&shaders::SPREAD, params, &operands, [n, 1], *after, flops);
     }
 
-    fn settle(&mut self, body: &Body<Id, IndexId>, posed: &Id, normals: &Id, displacement: &Id, positions: &mut Id) {
+    fn settle(&mut self, body: &Body<Id, IndexId>, exposed: &Id, normals: &Id, displacement: &Id, positions: &mut Id) {
         // One vertex in twenty or so is looked at again, from its neighbours' neighbours, too.
         self.search(
             &shaders::SETTLE,
             body,
-            [*posed, *normals, *displacement],
+            [*exposed, *normals, *displacement],
             *positions,
             (WALK + 8 * 36 + 6 * 60) / 20,
         );
@@ -219,14 +234,14 @@ impl Device for Recorder<'_> {
 }
 
 impl Recorder<'_> {
-    /// A search over the posed body: its positions, normals and a number per coordinate of the cloth -> such numbers. `flops` of each vertex.
+    /// A search over the posed body: its exposed positions, normals and a number per coordinate of the cloth -> such numbers. `flops` of each vertex.
     fn search(&mut self, shader: &'static Shader, body: &Body<Id, IndexId>, inputs: [Id; 3], output: Id, flops: usize) {
-        let [posed, normals, cloth] = inputs;
+        let [exposed, normals, cloth] = inputs;
         let n = self.length(cloth) / 3;
         let (offsets, corners, seeds) = (body.fans.offsets.0, body.fans.corners.0, body.seeds.0);
         let width = self.indices[seeds].len() / n;
         let operands = [
-            self.input(posed),
+            self.input(exposed),
             self.input(normals),
             self.pack(("fan offsets", offsets), |this| this.indices[offsets].to_vec()),
             self.pack(("fan corners", corners), |this| this.indices[corners].to_vec()),
@@ -243,11 +258,12 @@ impl Recorder<'_> {
             steepest: closest::STEEPEST,
             sliver: eight::SLIVER,
             folded: closest::FOLDED,
+            away: bury::AWAY,
             landmarks: collide::LANDMARKS.min(body.vertices) as u32,
             free: collide::FREE,
             elsewhere: collide::ELSEWHERE,
             again: settle::AGAIN,
         };
-        self.dispatch(shader, params, &operands, [n, 1], posed, n * flops);
+        self.dispatch(shader, params, &operands, [n, 1], exposed, n * flops);
     }
 }

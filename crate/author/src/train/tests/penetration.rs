@@ -5,7 +5,7 @@ use crate::body::body;
 use crate::synthetic;
 use crate::train::penetration::{Penetration, Unlabelled, WEIGHT};
 use ctsn_core::cpu::skin;
-use ctsn_core::model::{Body, Fans, Storage};
+use ctsn_core::model::{Body, Storage};
 use glam::Vec3;
 
 /// A trunk of two joints with two limbs of two, and cloth whose truth is inside the body, so that only the loss of penetration says otherwise.
@@ -50,14 +50,8 @@ fn cloth_inside_the_body_is_told_the_way_out() {
     }
     let n = points.len();
     let at = |radius: f32| points.iter().flat_map(|point| (radius * point).to_array()).collect::<Vec<f32>>();
-    let body = Body {
-        vertices: n,
-        rest: at(1.0),
-        skin: Skin { joints: vec![0; n], weights: vec![1.0; n], width: 1 },
-        fans: Fans::new(n, &triangles),
-        triangles,
-        seeds: (0..n as u32).collect(),
-    };
+    let skin = Skin { joints: vec![0; n], weights: vec![1.0; n], width: 1 };
+    let body = Body::new(at(1.0), skin, triangles, (0..n as u32).collect());
     let mut frame = BodyFrame::new(1);
     (0..3).for_each(|axis| frame.transforms[5 * axis] = 1.0);
     let mut penetration = Penetration::new(&body, n);
