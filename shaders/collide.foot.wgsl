@@ -49,10 +49,9 @@ fn is_elsewhere(place: f32, found: f32) -> bool {
     return place > bound * bound;
 }
 
-// The way from a to a vertex; none where that is buried.
-fn edge(a: vec3<f32>, vertex: u32) -> vec3<f32> {
-    let way = position(vertex) - a;
-    return select(way, vec3(0.0), body[3u * vertex] >= params.away);
+// A corner of a triangle around a vertex: the vertex itself where the corner is buried.
+fn corner(vertex: u32, other: u32) -> u32 {
+    return select(other, vertex, body[3u * other] >= params.away);
 }
 
 // The displacement to the gap, and the squared distance to the body around a place. (Parted in two functions, or with the highest corner
@@ -67,13 +66,14 @@ fn push_from(point: vec3<f32>, place: Place) -> vec4<f32> {
     var foot = vec3(0.0);
     var corners = vec2(vertex);
     for (var k = offsets[vertex]; k < offsets[vertex + 1u]; k++) {
-        let ab = edge(a, fans[k].x);
-        let ac = edge(a, fans[k].y);
+        let others = vec2(corner(vertex, fans[k].x), corner(vertex, fans[k].y));
+        let ab = position(others.x) - a;
+        let ac = position(others.y) - a;
         let spot = closest(point - a, ab, ac);
         if (spot.x < best.x) {
             best = spot;
             foot = a + ab * spot.y + ac * spot.z;
-            corners = fans[k];
+            corners = others;
         }
     }
     let steep = normal(vertex) * (1.0 - best.y - best.z) + normal(corners.x) * best.y + normal(corners.y) * best.z;

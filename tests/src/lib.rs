@@ -2,5 +2,6 @@
 
 pub mod finite;
 pub mod golden;
+pub mod nested;
 pub mod random;
 pub mod sphere;

@@ -6,7 +6,7 @@ use ctsn_core::cpu::Level;
 use ctsn_core::file::Tensors;
 use ctsn_core::model::HostModel;
 use ctsn_core::{Predictor, Streams};
-use ctsn_tests::golden;
+use ctsn_tests::{golden, sphere};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
@@ -69,7 +69,8 @@ fn prediction_allocates_once() {
     let poses = file.tensors["pose.joints"].to_f32().expect("poses");
     for level in [Level::fallback(), Level::baseline(), Level::new()] {
         let mut made = None;
-        let model = HostModel::parse(small.model).expect("golden model");
+        let mut model = HostModel::parse(small.model).expect("golden model");
+        model.body = Some(sphere::body(model.sizes.vertices));
         assert!(calls(|| made = Some(Predictor::from_model(model, level))) > 10, "the counter counts");
         let mut predictor = made.expect("a predictor");
         let size = 12 * predictor.sizes().joints;

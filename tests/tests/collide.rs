@@ -5,33 +5,18 @@ use ctsn_core::cpu::{
     closest::{DEPTH, GAP},
     spread::FOLLOW,
 };
-use ctsn_core::model::{Body, HostModel, Skin};
+use ctsn_core::model::HostModel;
 use ctsn_core::topology::Graph;
 use ctsn_core::{Predictor, Streams};
-use ctsn_tests::random::{self, Shape};
-use ctsn_tests::sphere::{AROUND, RADIUS, RINGS, sphere, sphere_of};
+use ctsn_tests::nested::{EMERGED, buried, emerged};
+use ctsn_tests::random;
+use ctsn_tests::sphere::{RADIUS, RINGS, length, model, sphere};
 use fastrand::Rng;
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::{wasm_bindgen_test as test, wasm_bindgen_test_configure};
 
 #[cfg(target_arch = "wasm32")]
 wasm_bindgen_test_configure!(run_in_browser);
-
-/// A cloth of loose points, `places` [n, 3], that follows one joint with a body of these positions and triangles.
-fn model(rng: &mut Rng, places: Vec<f32>, positions: Vec<f32>, triangles: Vec<u32>) -> HostModel {
-    let n = places.len() / 3;
-    let shape = Shape { vertices: n, joints: 1, embedding: 1, basis: 1, heads: 1, per_head: 2, layers: 1 };
-    let mut model = random::model(rng, shape);
-    let follow = |count: usize| Skin { joints: vec![0; count], weights: vec![1.0; count], width: 1 };
-    (model.rest, model.skin, model.triangles) = (places, follow(n), Vec::new());
-    (model.skeleton, model.mesh, model.surface) = (vec![0.0; 3 * n], vec![0.0; 3 * n], None);
-    model.graph = Graph::new(n, &[]);
-    model.rig.inverse_bind = vec![[1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0]];
-    let vertices = positions.len() / 3;
-    let seeds = (0..4 * n).map(|_| rng.u32(..vertices as u32)).collect();
-    model.body = Some(Body::new(positions, follow(vertices), triangles, seeds));
-    model
-}
 
 /// Points within a ball twice as wide as the body.
 fn points(rng: &mut Rng, count: usize) -> Vec<f32> {
@@ -47,10 +32,6 @@ fn predict(model: &HostModel) -> Vec<f32> {
     let mut predictor = Predictor::from_model(model.clone(), Level::new());
     predictor.predict_row_major(&STILL, Streams::Both).expect("a pose");
     predictor.positions().to_vec()
-}
-
-fn length(point: &[f32]) -> f32 {
-    point.iter().map(|c| c * c).sum::<f32>().sqrt()
 }
 
 #[test]
@@ -113,39 +94,22 @@ fn cloth_that_hangs_free_comes_out_of_what_it_never_met() {
     assert!(inside > 50, "{inside} inside");
 }
 
-/// A sphere with a smaller one inside, whose vertices follow the landmarks; the cloth, just outside the smaller one, has all its seeds
-/// there but the last.
-fn buried(rng: &mut Rng) -> HostModel {
-    const LANDMARKS: usize = 64;
-    let (outer, outer_faces) = sphere_of(2.0 * RADIUS, AROUND, RINGS);
-    let (inner, inner_faces) = sphere_of(RADIUS, 10, 7);
-    let count = (inner.len() / 3) as u32;
-    assert!(count <= ctsn_core::cpu::bury::BURIABLE as u32);
-    let raised = inner.chunks_exact(3).flat_map(|p| [p[0], p[1] + RAISED, p[2]]);
-    let positions = outer.iter().copied().take(3 * LANDMARKS).chain(raised).chain(outer[3 * LANDMARKS..].to_vec());
-    let place = |i: &u32| if (*i as usize) < LANDMARKS { *i } else { *i + count };
-    let triangles = outer_faces.iter().map(place).chain(inner_faces.iter().map(|i| i + LANDMARKS as u32));
-    let places = (0..300).flat_map(|_| {
-        let way: [f32; 3] = std::array::from_fn(|_| rng.f32() - 0.5);
-        let [x, y, z] = way.map(|c| c * 1.05 * RADIUS / length(&way));
-        [x, y + RAISED, z]
-    });
-    let (places, positions, triangles) = (places.collect(), positions.collect(), triangles.collect());
-    let mut model = model(rng, places, positions, triangles);
-    let seeds = (0..300).flat_map(|_| [(); 3].map(|()| LANDMARKS as u32 + rng.u32(..count)).into_iter().chain([0]));
-    model.body.as_mut().expect("a body").seeds = seeds.collect();
-    model
-}
-
-/// How far the middle of the smaller sphere is above that of the other, metres.
-const RAISED: f32 = 0.03;
-
 #[test]
 fn cloth_beside_skin_that_is_inside_another_part_comes_out_of_both() {
     let model = buried(&mut Rng::with_seed(13));
     let sagitta = 2.0 * RADIUS * (1.0 - (std::f32::consts::PI / RINGS as f32).cos());
     for (place, found) in model.rest.chunks_exact(3).zip(predict(&model).chunks_exact(3)) {
         assert!(length(found) > 2.0 * RADIUS - sagitta, "{place:?} came to {found:?}");
+    }
+}
+
+#[test]
+fn cloth_beside_the_rim_of_what_is_buried_comes_out() {
+    let model = emerged(&mut Rng::with_seed(15));
+    assert!(model.rest.len() > 300);
+    for (place, found) in model.rest.chunks_exact(3).zip(predict(&model).chunks_exact(3)) {
+        let height = length(&[found[0], found[1] - EMERGED, found[2]]) - RADIUS;
+        assert!(height > 0.0, "{place:?} came to {found:?}, {height}");
     }
 }
 

@@ -1,10 +1,10 @@
 //! Model files that are cut, flipped or lying: each has its kind of error; none panics, none yields NaN.
 
 use ctsn_core::file::{Tensor, Tensors};
-use ctsn_core::model::HostModel;
+use ctsn_core::model::{HostModel, Storage};
 use ctsn_core::{Predictor, Result};
 use ctsn_tests::finite::{pose, predict};
-use ctsn_tests::golden;
+use ctsn_tests::{golden, sphere};
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::{wasm_bindgen_test as test, wasm_bindgen_test_configure};
 
@@ -43,12 +43,15 @@ fn flipped_files_are_refused_or_finite() {
         random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (random >> 33) as usize % below
     };
-    let (length, payload) = header(TINY);
+    let mut whole = HostModel::parse(TINY).expect("golden model");
+    whole.body = Some(sphere::body(whole.sizes.vertices));
+    let whole = whole.to_bytes(Storage::F32);
+    let (length, payload) = header(&whole);
     let (mut refused, mut finite) = (0, 0);
     for round in 0..FLIPS {
-        let mut bytes = TINY.to_vec();
+        let mut bytes = whole.clone();
         // Half of the flips in the header, where a digit makes a size lie; half in the numbers.
-        let place = if round % 2 == 0 { 8 + next(length) } else { payload + next(TINY.len() - payload) };
+        let place = if round % 2 == 0 { 8 + next(length) } else { payload + next(whole.len() - payload) };
         if round % 4 == 0 && bytes[place].is_ascii_digit() {
             bytes[place] = b'0' + next(10) as u8;
         } else {

@@ -26,7 +26,7 @@ const POSES: usize = 600;
 /// Poses that the skin is raised for, spread over the samples.
 const BENT: usize = 60;
 /// Poses that are searched for skin inside another part of the body, spread over the samples.
-const FOLDED: usize = 150;
+const CREASED: usize = 150;
 /// Cloth that near to a vertex inside another part of the body would be kept out of it, metres.
 const BESIDE: f64 = 0.03;
 /// Cloth further from the skin says nothing about it, metres.
@@ -62,7 +62,10 @@ pub fn body(setup: &Setup, samples: &[&Sample]) -> Result<Body<Vec<f32>, Vec<u32
     let missed = |(sample, seen): (&&&Sample, &Vec<_>)| missed(&skin, &around, &seeds, sample, seen);
     let missed: Vec<Vec<Option<u32>>> = poses.par_iter().zip(&seen).map(missed).collect();
     add_other_side(&mut seeds, &missed, &Graph::new(setup.template.len() / 3, &setup.triangles));
-    Ok(cut(&skin, &visits, &seeds, &buried(&skin, &every(FOLDED).collect::<Vec<_>>())))
+    let kept = kept(&skin, &visits, &seeds);
+    skin.body.triangles.retain(|triangle| triangle.iter().all(|i| kept[*i as usize]));
+    let buried = buried(&skin, &every(CREASED).collect::<Vec<_>>());
+    Ok(cut(&skin, &kept, &seeds, &buried))
 }
 
 /// How many cloth vertices were beside each vertex of the skin while that was inside another part of the body.
@@ -202,12 +205,7 @@ fn landmarks_first(positions: &[DVec3], list: &mut [usize]) {
 }
 
 /// The part of the skin that was seen, [`RINGS`] rings around it included.
-fn cut(
-    skin: &Character,
-    visits: &[BTreeMap<u32, usize>],
-    seeds: &[[u32; SEEDS]],
-    buried: &[usize],
-) -> Body<Vec<f32>, Vec<u32>> {
+fn kept(skin: &Character, visits: &[BTreeMap<u32, usize>], seeds: &[[u32; SEEDS]]) -> Vec<bool> {
     let Mesh { positions, triangles } = &skin.body;
     let graph = Graph::new(positions.len(), triangles.as_flattened());
     let mut kept = vec![false; positions.len()];
@@ -218,15 +216,21 @@ fn cut(
         let before = kept.clone();
         (0..kept.len()).for_each(|i| kept[i] |= graph.of(i).iter().any(|j| before[*j as usize]));
     }
-    let mut list: Vec<usize> = (0..kept.len()).filter(|i| kept[*i]).collect();
+    kept
+}
+
+/// The kept vertices of the skin: landmarks that are never inside another part of the body, then what is so most, then the others.
+fn cut(skin: &Character, kept: &[bool], seeds: &[[u32; SEEDS]], buried: &[usize]) -> Body<Vec<f32>, Vec<u32>> {
+    let Mesh { positions, triangles } = &skin.body;
+    let (mut list, inside): (Vec<usize>, Vec<usize>) =
+        (0..kept.len()).filter(|i| kept[*i]).partition(|i| buried[*i] == 0);
     landmarks_first(positions, &mut list);
-    // Then what is inside another part of the body most; the others as they were.
+    list.extend(inside);
     let others = LANDMARKS.min(list.len());
     list[others..].sort_by_key(|vertex| Reverse(buried[*vertex]));
     let mut place = vec![0; kept.len()];
     list.iter().enumerate().for_each(|(new, old)| place[*old] = new as u32);
-    let whole = triangles.iter().filter(|triangle| triangle.iter().all(|i| kept[*i as usize]));
-    let triangles: Vec<u32> = whole.flatten().map(|i| place[*i as usize]).collect();
+    let triangles: Vec<u32> = triangles.iter().flatten().map(|i| place[*i as usize]).collect();
     let width = list.iter().map(|i| skin.weights[*i].len()).max().unwrap_or(1).max(1);
     let mut slots = Skin { joints: Vec::new(), weights: Vec::new(), width };
     for (row, vertex) in list.iter().enumerate() {

@@ -31,7 +31,8 @@ pub struct Posed<'a> {
     pub rings: &'a Rings,
 }
 
-/// Up to eight neighbours of a vertex by axis, so that a step of the walk compares them at once. Places that are left hold the vertex itself.
+/// Up to eight neighbours of a vertex by axis, so that a step of the walk compares them at once. Places that are left or
+/// buried hold the vertex itself.
 #[derive(Clone, Default)]
 struct Ring {
     vertices: [u32; RING],
@@ -77,10 +78,11 @@ impl Ring {
     fn fill(&mut self, vertex: usize, fan: &[[u32; 2]], positions: &[[f32; 3]]) {
         self.vertices = [vertex as u32; RING];
         self.vertices.iter_mut().zip(fan).for_each(|(near, corners)| *near = corners[0]);
-        for (place, near) in self.vertices.iter().enumerate() {
-            let near = &positions[*near as usize];
-            let near = if is_away(near) { &positions[vertex] } else { near };
-            (0..3).for_each(|axis| self.positions[axis][place] = near[axis]);
+        for (place, near) in self.vertices.iter_mut().enumerate() {
+            if is_away(&positions[*near as usize]) {
+                *near = vertex as u32;
+            }
+            (0..3).for_each(|axis| self.positions[axis][place] = positions[*near as usize][axis]);
         }
     }
 }
@@ -238,11 +240,12 @@ impl Posed<'_> {
             }
         }
         let (_, [second, third], [b, c]) = best;
-        let edge = |corner: u32| match &self.positions[corner as usize] {
-            corner if is_away(corner) => Vec3::ZERO,
-            corner => Vec3::from_array(*corner) - a,
-        };
-        let way = edge(second) * b + edge(third) * c;
+        // A buried corner stands for the vertex itself: rounding decides what its share is.
+        let [second, third] = [second, third].map(|corner| match is_away(&self.positions[corner as usize]) {
+            true => vertex,
+            false => corner,
+        });
+        let way = (self.position(second) - a) * b + (self.position(third) - a) * c;
         let sum = self.normal(vertex) * (1.0 - b - c) + self.normal(second) * b + self.normal(third) * c;
         // Opposite normals: a body folded onto itself has no outside there.
         let length = sum.length();

@@ -1,5 +1,5 @@
 //! The body that cloth is kept out of: a simplified mesh of the character's, posed like it. Optional; a model without it predicts as
-//! the network does. The file's tensors: `body.rest` [b, 3], `body.joints` and `body.weights` [b, width], `body.triangles` [t, 3],
+//! the network does. The file's tensors: `body.rest` [b, 3] in the order of [`Body::rest`], `body.joints` and `body.weights` [b, width], `body.triangles` [t, 3],
 //! `body.seeds` [n, s].
 
 use super::Skin;
@@ -13,7 +13,8 @@ use glam::Vec3;
 pub struct Body<B, I> {
     /// `b`: vertices.
     pub vertices: usize,
-    /// Canonical positions, metres [b, 3].
+    /// Canonical positions, metres [b, 3]; first [`LANDMARKS`](crate::cpu::collide::LANDMARKS) that lie evenly, then those that may be inside
+    /// another part of the body, at most [`BURIABLE`](crate::cpu::bury::BURIABLE).
     pub rest: B,
     /// Skin weights.
     pub skin: Skin<B, I>,
@@ -51,7 +52,7 @@ impl Fans<Vec<u32>> {
     }
 }
 
-/// Area of each vertex: a third of its triangles'; positions [b, 3], triangles [t, 3] -> [b].
+/// Area of each vertex: a third of its triangles', zero where `f32` cannot hold it; positions [b, 3], triangles [t, 3] -> [b].
 pub fn areas(positions: &[f32], triangles: &[u32]) -> Vec<f32> {
     let mut areas = vec![0.0; positions.len() / 3];
     for triangle in triangles.as_chunks::<3>().0 {
@@ -59,6 +60,7 @@ pub fn areas(positions: &[f32], triangles: &[u32]) -> Vec<f32> {
         let third = (b - a).cross(c - a).length() / 6.0;
         triangle.iter().for_each(|i| areas[*i as usize] += third);
     }
+    areas.iter_mut().filter(|area| !area.is_finite()).for_each(|area| *area = 0.0);
     areas
 }
 
