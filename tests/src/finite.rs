@@ -28,3 +28,10 @@ pub fn predict(predictor: &mut Predictor, pose: &[f32]) -> bool {
     };
     STREAMS.map(one) == [true; 3]
 }
+
+/// The largest difference of two results; a NaN wins.
+pub fn largest(a: &[f32], b: &[f32]) -> f32 {
+    assert_eq!(a.len(), b.len());
+    let wider = |largest: f32, d: f32| if d > largest || d.is_nan() { d } else { largest };
+    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, wider)
+}

@@ -7,6 +7,7 @@ use ctsn_author::{body, rig, synthetic, train};
 use ctsn_core::cpu::Level;
 use ctsn_core::model::HostModel;
 use ctsn_core::{Predictor, Streams};
+use ctsn_tests::finite::largest;
 use fastrand::Rng;
 use pollster::block_on;
 
@@ -45,14 +46,6 @@ fn play(clip: &[Vec<f32>], mut predict: impl FnMut(&[f32]) -> Vec<f32>) -> Vec<V
         assert!(error <= TOLERANCE, "frame {frame}: {error} m from what it was forwards");
     }
     forwards
-}
-
-fn largest(a: &[f32], b: &[f32]) -> f32 {
-    assert_eq!(a.len(), b.len());
-    a.iter()
-        .zip(b)
-        .map(|(a, b)| (a - b).abs())
-        .fold(0.0, |largest, d| if d > largest || d.is_nan() { d } else { largest })
 }
 
 #[test]

@@ -8,6 +8,8 @@ use ctsn_core::cpu::{
 use ctsn_core::model::HostModel;
 use ctsn_core::topology::Graph;
 use ctsn_core::{Predictor, Streams};
+#[cfg(not(target_arch = "wasm32"))]
+use ctsn_tests::finite::largest;
 use ctsn_tests::nested::{EMERGED, buried, emerged};
 use ctsn_tests::random;
 use ctsn_tests::sphere::{RADIUS, RINGS, length, model, sphere};
@@ -106,7 +108,7 @@ fn cloth_beside_skin_that_is_inside_another_part_comes_out_of_both() {
 #[test]
 fn cloth_beside_the_rim_of_what_is_buried_comes_out() {
     let model = emerged(&mut Rng::with_seed(15));
-    assert!(model.rest.len() > 300);
+    assert!(model.rest.len() > 3 * 300);
     for (place, found) in model.rest.chunks_exact(3).zip(predict(&model).chunks_exact(3)) {
         let height = length(&[found[0], found[1] - EMERGED, found[2]]) - RADIUS;
         assert!(height > 0.0, "{place:?} came to {found:?}, {height}");
@@ -208,11 +210,11 @@ fn on_gpu(gpu: &ctsn_gpu::Gpu, model: &HostModel) -> Vec<f32> {
 #[cfg(not(target_arch = "wasm32"))]
 #[test]
 fn the_gpu_finds_what_cloth_never_met() {
-    let models =
-        [two_spheres(&mut Rng::with_seed(10)), dragged(&mut Rng::with_seed(12)), buried(&mut Rng::with_seed(14))];
-    for model in models {
+    let [a, b, c, d] = [10, 12, 14, 16].map(Rng::with_seed);
+    for (scene, mut rng) in [(two_spheres as fn(&mut Rng) -> HostModel, a), (dragged, b), (buried, c), (emerged, d)] {
+        let model = scene(&mut rng);
         let found = on_gpu(&gpu(), &model);
-        let difference = predict(&model).iter().zip(found).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+        let difference = largest(&predict(&model), &found);
         assert!(difference <= 1e-4, "{difference}");
     }
 }
@@ -237,8 +239,7 @@ fn the_gpu_agrees() {
         on_cpu.predict_row_major(&pose, Streams::Both).expect("a pose");
         bare.predict_row_major(&pose, Streams::Both).expect("a pose");
         let found = block_on(on_gpu.read()).expect("a prediction").positions;
-        let difference = |a: &[f32], b: &[f32]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
-        assert!(difference(&found, on_cpu.positions()) <= 1e-4);
-        assert!(difference(bare.positions(), on_cpu.positions()) > 0.01, "nothing was repaired");
+        assert!(largest(&found, on_cpu.positions()) <= 1e-4);
+        assert!(largest(bare.positions(), on_cpu.positions()) > 0.01, "nothing was repaired");
     }
 }

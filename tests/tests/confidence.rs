@@ -5,6 +5,7 @@ use ctsn_core::device::Space;
 use ctsn_core::model::{HostModel, Storage};
 use ctsn_core::pose::{BodyFrame, Range};
 use ctsn_core::{Error, Predictor, Streams};
+use ctsn_tests::finite::largest;
 use ctsn_tests::golden;
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::{wasm_bindgen_test as test, wasm_bindgen_test_configure};
@@ -32,10 +33,6 @@ fn moved(model: &HostModel, pose: &[f32], metres: f32) -> Vec<f32> {
     let joints = pose.as_chunks_mut::<12>().0.iter_mut().enumerate();
     joints.filter(|(j, _)| *j != model.rig.root).for_each(|(_, joint)| joint[3] += metres);
     pose
-}
-
-fn largest(a: &[f32], b: &[f32]) -> f32 {
-    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, |most, d| if d <= most { most } else { d })
 }
 
 #[test]

@@ -5,6 +5,7 @@ use ctsn_core::cpu::{Level, normals::normals};
 use ctsn_core::model::{HostModel, Storage};
 use ctsn_core::{Predictor, Streams};
 use ctsn_gpu::Gpu;
+use ctsn_tests::finite::largest;
 use ctsn_tests::golden;
 use ctsn_tests::random::{self, Shape};
 use pollster::block_on;
@@ -118,12 +119,6 @@ fn a_mesh_stream_that_adds_nothing_is_not_computed() {
     assert_eq!(predict(&left_out), predict(&computed));
     assert!(largest(&found, &predict(&computed)) <= TOLERANCE);
     assert!(block_on(on_gpu.stages()).expect("its stages").iter().all(|(name, _)| name != "mesh"));
-}
-
-fn largest(a: &[f32], b: &[f32]) -> f32 {
-    assert_eq!(a.len(), b.len());
-    let wider = |largest: f32, d: f32| if d > largest || d.is_nan() { d } else { largest };
-    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, wider)
 }
 
 #[test]

@@ -219,7 +219,8 @@ fn kept(skin: &Character, visits: &[BTreeMap<u32, usize>], seeds: &[[u32; SEEDS]
     kept
 }
 
-/// The kept vertices of the skin: landmarks that are never inside another part of the body, then what is so most, then the others.
+/// The kept vertices of the skin, whose triangles are theirs: landmarks that no pose looked at buries beside cloth, then what is buried most, then
+/// the others.
 fn cut(skin: &Character, kept: &[bool], seeds: &[[u32; SEEDS]], buried: &[usize]) -> Body<Vec<f32>, Vec<u32>> {
     let Mesh { positions, triangles } = &skin.body;
     let (mut list, inside): (Vec<usize>, Vec<usize>) =
