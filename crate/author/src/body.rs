@@ -228,7 +228,9 @@ fn cut(skin: &Character, kept: &[bool], seeds: &[[u32; SEEDS]], buried: &[usize]
     landmarks_first(positions, &mut list);
     list.extend(inside);
     let others = LANDMARKS.min(list.len());
-    list[others..].sort_by_key(|vertex| Reverse(buried[*vertex]));
+    // What is pressed into the figure pushes its cloth, not the other way round.
+    let is_obstacle = |vertex: usize| skin.weights[vertex].iter().any(|(joint, _)| skin.is_obstacle(*joint));
+    list[others..].sort_by_key(|vertex| (is_obstacle(*vertex), Reverse(buried[*vertex])));
     let mut place = vec![0; kept.len()];
     list.iter().enumerate().for_each(|(new, old)| place[*old] = new as u32);
     let triangles: Vec<u32> = triangles.iter().flatten().map(|i| place[*i as usize]).collect();
