@@ -21,7 +21,7 @@ fn nested(raised: f32) -> (Vec<f32>, Vec<u32>) {
 /// Vertices of the smaller sphere.
 const INNER: Range<usize> = LANDMARKS..LANDMARKS + 62;
 /// How far it is raised inside the other, metres.
-pub const RAISED: f32 = 0.03;
+const RAISED: f32 = 0.03;
 
 /// The cloth, just outside the smaller sphere and inside the other, has all its seeds on the smaller but the last.
 pub fn buried(rng: &mut Rng) -> HostModel {

@@ -44,8 +44,7 @@ pub fn sphere_of(radius: f32, around: u32, rings: u32) -> (Vec<f32>, Vec<u32>) {
 pub fn body(n: usize) -> Body<Vec<f32>, Vec<u32>> {
     let (positions, triangles) = sphere();
     let count = positions.len() / 3;
-    let skin = Skin { joints: vec![0; count], weights: vec![1.0; count], width: 1 };
-    Body::new(positions, skin, triangles, (0..4 * n).map(|i| (i % count) as u32).collect())
+    Body::new(positions, follow(count), triangles, (0..4 * n).map(|i| (i % count) as u32).collect())
 }
 
 /// A cloth of loose points, `places` [n, 3], that follows one joint with a body of these positions and triangles.
@@ -53,7 +52,6 @@ pub fn model(rng: &mut Rng, places: Vec<f32>, positions: Vec<f32>, triangles: Ve
     let n = places.len() / 3;
     let shape = Shape { vertices: n, joints: 1, embedding: 1, basis: 1, heads: 1, per_head: 2, layers: 1 };
     let mut model = random::model(rng, shape);
-    let follow = |count: usize| Skin { joints: vec![0; count], weights: vec![1.0; count], width: 1 };
     (model.rest, model.skin, model.triangles) = (places, follow(n), Vec::new());
     (model.skeleton, model.mesh, model.surface) = (vec![0.0; 3 * n], vec![0.0; 3 * n], None);
     model.graph = Graph::new(n, &[]);
@@ -62,6 +60,11 @@ pub fn model(rng: &mut Rng, places: Vec<f32>, positions: Vec<f32>, triangles: Ve
     let seeds = (0..4 * n).map(|_| rng.u32(..vertices as u32)).collect();
     model.body = Some(Body::new(positions, follow(vertices), triangles, seeds));
     model
+}
+
+/// `count` vertices that follow the first joint.
+fn follow(count: usize) -> Skin<Vec<f32>, Vec<u32>> {
+    Skin { joints: vec![0; count], weights: vec![1.0; count], width: 1 }
 }
 
 /// Length of a vector.

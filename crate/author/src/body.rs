@@ -74,16 +74,17 @@ fn buried(skin: &Character, poses: &[&&Sample]) -> Vec<usize> {
     let all = numbers(&skin.body.positions);
     let areas = areas(&all, skin.body.triangles.as_flattened());
     let beside = |sample: &&&Sample| {
-        let posed = numbers(&skin.pose_body(&framed(skin, sample)));
+        let places = skin.pose_body(&framed(skin, sample));
+        let posed = numbers(&places);
         let (mut up, mut exposed) = (posed.clone(), posed.clone());
         normals(&posed, skin.body.triangles.as_flattened(), &mut up);
         bury(Level::new(), &posed, &up, &areas, 0..count, &mut Dipoles::default(), &mut exposed);
         let cloth = vertices(&sample.truth);
-        let near = |(place, seen): (DVec3, &[f32; 3])| match is_away(seen) {
-            true => cloth.iter().filter(|vertex| vertex.distance(place) < BESIDE).count(),
+        let near = |(place, seen): (&DVec3, &[f32; 3])| match is_away(seen) {
+            true => cloth.iter().filter(|vertex| vertex.distance(*place) < BESIDE).count(),
             false => 0,
         };
-        vertices(&posed).into_iter().zip(exposed.as_chunks().0).map(near).collect()
+        places.iter().zip(exposed.as_chunks().0).map(near).collect()
     };
     let sum = |a: Vec<usize>, b: Vec<usize>| a.iter().zip(&b).map(|(a, b)| a + b).collect();
     poses.par_iter().map(beside).reduce(|| vec![0; count], sum)
@@ -219,8 +220,8 @@ fn kept(skin: &Character, visits: &[BTreeMap<u32, usize>], seeds: &[[u32; SEEDS]
     kept
 }
 
-/// The kept vertices of the skin, whose triangles are theirs: landmarks that no pose looked at buries beside cloth, then what is buried most, then
-/// the others.
+/// The kept vertices of the skin, whose triangles are theirs: landmarks, which no pose looked at buries beside cloth, then what is buried
+/// most, then the others.
 fn cut(skin: &Character, kept: &[bool], seeds: &[[u32; SEEDS]], buried: &[usize]) -> Body<Vec<f32>, Vec<u32>> {
     let Mesh { positions, triangles } = &skin.body;
     let (mut list, inside): (Vec<usize>, Vec<usize>) =
@@ -230,7 +231,7 @@ fn cut(skin: &Character, kept: &[bool], seeds: &[[u32; SEEDS]], buried: &[usize]
     let others = LANDMARKS.min(list.len());
     // What is pressed into the figure pushes its cloth, not the other way round.
     let is_obstacle = |vertex: usize| skin.weights[vertex].iter().any(|(joint, _)| skin.is_obstacle(*joint));
-    list[others..].sort_by_key(|vertex| (is_obstacle(*vertex), Reverse(buried[*vertex])));
+    list[others..].sort_by_cached_key(|vertex| (is_obstacle(*vertex), Reverse(buried[*vertex])));
     let mut place = vec![0; kept.len()];
     list.iter().enumerate().for_each(|(new, old)| place[*old] = new as u32);
     let triangles: Vec<u32> = triangles.iter().flatten().map(|i| place[*i as usize]).collect();

@@ -218,7 +218,7 @@ impl Posed<'_> {
     #[inline(always)]
     fn closest<S: Simd>(&self, simd: S, point: Vec3, vertex: u32) -> Option<(Vec3, Vec3)> {
         let a = self.position(vertex);
-        if is_away(&a.to_array()) {
+        if is_away(&self.positions[vertex as usize]) {
             return None;
         }
         let mut best = (f32::INFINITY, [vertex; 2], [0.0; 2]);

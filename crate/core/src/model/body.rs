@@ -1,6 +1,6 @@
 //! The body that cloth is kept out of: a simplified mesh of the character's, posed like it. Optional; a model without it predicts as
-//! the network does. The file's tensors: `body.rest` [b, 3] in the order of [`Body::rest`], `body.joints` and `body.weights` [b, width], `body.triangles` [t, 3],
-//! `body.seeds` [n, s].
+//! the network does. The file's tensors: `body.rest` [b, 3] in the order of [`Body::rest`], `body.joints` and `body.weights` [b, width],
+//! `body.triangles` [t, 3], `body.seeds` [n, s].
 
 use super::Skin;
 use super::write::Writer;
@@ -13,8 +13,8 @@ use glam::Vec3;
 pub struct Body<B, I> {
     /// `b`: vertices.
     pub vertices: usize,
-    /// Canonical positions, metres [b, 3]; first [`LANDMARKS`](crate::cpu::collide::LANDMARKS) that lie evenly, then those that may be inside
-    /// another part of the body, at most [`BURIABLE`](crate::cpu::bury::BURIABLE).
+    /// Canonical positions, metres [b, 3]; first [`LANDMARKS`](crate::cpu::collide::LANDMARKS) that lie evenly, then those that may be
+    /// inside another part of the body, at most [`BURIABLE`](crate::cpu::bury::BURIABLE).
     pub rest: B,
     /// Skin weights.
     pub skin: Skin<B, I>,

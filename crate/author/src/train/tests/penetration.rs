@@ -92,7 +92,7 @@ fn poses_without_truth_teach_to_stay_outside_the_body() {
         unseen.iter().map(&mut loss).sum::<f32>() / unseen.len() as f32
     };
     let [without, with] = [false, true].map(|unlabelled| inside(&train(unlabelled)));
-    assert!(without > 1e-3 && with < 0.9 * without, "{without} m without them, {with} m with them");
+    assert!(without > 2e-3 && with < 0.9 * without, "{without} m without them, {with} m with them");
 }
 
 #[test]
