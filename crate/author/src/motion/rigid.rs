@@ -11,8 +11,8 @@ type Place = [[f64; 3]; 2];
 
 /// Seconds until a clip repeats.
 const PERIOD: f64 = 10.0;
-/// Clips through low-discrepancy places, and how many places each goes through. Six freedoms want variety: 960 poses of 30 of them
-/// teach a sheet over the box 8.5, 13.2 and 6.1 mm on the last three clips, as many of 8 of them 13.6, 16.1 and 13.3 mm.
+/// Clips through low-discrepancy places, and how many places each goes through. Six freedoms want variety: 960 training poses taught a
+/// sheet over the box 8.5, 13.2 and 6.1 mm on the last three clips with 30 wanderings, 13.6, 16.1 and 13.3 mm with 8.
 const WANDERINGS: usize = 30;
 const KEYS: usize = 8;
 /// Bounds of those places.
