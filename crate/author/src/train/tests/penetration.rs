@@ -72,8 +72,9 @@ fn cloth_inside_the_body_is_told_the_way_out() {
 #[test]
 fn poses_without_truth_teach_to_stay_outside_the_body() {
     let (model, setup, samples) = scene();
-    let samples: Vec<&Sample> = samples.iter().collect();
-    let settings = Settings { epochs: 10, batch: 4, ..Settings::default() };
+    // Few of them: many simulated poses teach it by themselves.
+    let samples: Vec<&Sample> = samples.iter().take(3).collect();
+    let settings = Settings { epochs: 30, batch: 4, ..Settings::default() };
     let train = |unlabelled: bool| {
         let mut trainer = Trainer::new(model.clone(), &setup, &samples, settings).unwrap();
         if !unlabelled {
@@ -92,7 +93,7 @@ fn poses_without_truth_teach_to_stay_outside_the_body() {
         unseen.iter().map(&mut loss).sum::<f32>() / unseen.len() as f32
     };
     let [without, with] = [false, true].map(|unlabelled| inside(&train(unlabelled)));
-    assert!(without > 2e-3 && with < 0.9 * without, "{without} m without them, {with} m with them");
+    assert!(without > 2e-3 && with < 0.7 * without, "{without} m without them, {with} m with them");
 }
 
 #[test]
