@@ -22,8 +22,8 @@ use rayon::prelude::*;
 /// two trainings, with 2 by 2.8 in one; 0.3 and 0.4 % of its vertices were inside before the repair, then 0.2.)
 pub(super) const WEIGHT: f32 = 2.0;
 
-/// Unlabelled poses for each of a batch. (Of a skirt in unseen poses, one for each leaves 0.96 % inside, four leave 0.91 %, with a weight of 1; a
-/// step takes 7 % longer.)
+/// Unlabelled poses for each of a batch. (Of a skirt in unseen poses, one for each leaves 0.96 % inside, four leave 0.91 %, with a weight
+/// of 1; a step takes 7 % longer.)
 pub(super) const UNLABELLED: usize = 4;
 
 /// The body of one pose after the other; one per thread.

@@ -10,8 +10,8 @@ use std::ops::Range;
 
 /// Body vertices after the landmarks that may be buried: those that were so most. (Twice as many left as much inside.)
 pub const BURIABLE: usize = 64;
-/// How far above its own skin a vertex asks whether it is inside, in square roots of its area: nearer, dipoles do not look like a surface. (With
-/// 0.5 a skirt kept a vertex 6.0 mm inside, with 0.3 a cape's slow motion trembled by 5.0 instead of 4.8 % more.)
+/// How far above its own skin a vertex asks whether it is inside, in square roots of its area: nearer, dipoles do not look like a surface.
+/// (With 0.5 a skirt kept a vertex 6.0 mm inside, with 0.3 a cape's slow motion trembled by 5.0 instead of 4.8 % more.)
 pub const ABOVE: f32 = 0.4;
 /// Winding number from which a vertex is buried: 0 is outside, 1 inside, anything in a fold, where dipoles are near. (One in five of those
 /// buried on a skirt is outside by the exact number, in creases; with 0.35 it kept a vertex 2.2 mm inside.)

@@ -8,7 +8,8 @@ use ctsn_core::cpu::skin;
 use ctsn_core::model::{Body, Storage};
 use glam::Vec3;
 
-/// A trunk of two joints with two limbs of two, and cloth whose truth is inside the body, so that only the loss of penetration says otherwise.
+/// A trunk of two joints with two limbs of two, and cloth whose truth is inside the body, so that only the loss of penetration says
+/// otherwise.
 fn scene() -> (HostModel, Setup, Vec<Sample>) {
     let (mut setup, mut samples) = synthetic::dataset(120, 6, 16);
     setup.description.parents = vec![None, Some(0), Some(1), Some(2), Some(1), Some(4)];
