@@ -2,7 +2,6 @@
 import { chromium, environment, flags } from './browser.mjs';
 import { buildLibrary } from './library.mjs';
 import { at, main, need, say } from './step.mjs';
-import { ensureToolchain } from './toolchain.mjs';
 
 const RUNS = 7;
 const PREDICTIONS = 30;
@@ -35,7 +34,9 @@ async function measureInPage({ runs, predictions }) {
   return result;
 }
 
-/** Serves the npm package and the model to a page of Chromium that is isolated, so that its clock ticks in microseconds. */
+/**
+ * Serves the npm package and the model to a page of Chromium that is isolated, so that its clock ticks in microseconds.
+ */
 async function inChromium(modelFile) {
   const [{ chromium: playwright }, { createServer }] = await Promise.all([import('playwright-core'), import('vite')]);
   const server = await createServer({
@@ -63,9 +64,8 @@ async function inChromium(modelFile) {
 
 await main(async () => {
   chromium();
-  await ensureToolchain();
   await buildLibrary();
-  await need('cargo', ['build', '--release', '--package', 'ctsn-author', '--bin', 'ctsn']);
+  await need('cargo', ['build', '--release', '--package', 'ctsn', '--bin', 'ctsn']);
   const model = at('target', 'bench.safetensors');
   const ctsn = at('target', 'release', 'ctsn');
   await need(ctsn, ['bench', '--write-model', model]);

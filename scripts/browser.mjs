@@ -6,7 +6,7 @@ import { at, Stop } from './step.mjs';
 const names = { CHROMIUM: ['chromium', 'chromium-browser', 'google-chrome', 'google-chrome-stable'], CHROMEDRIVER: ['chromedriver'] };
 const folders = [...(process.env.PATH ?? '').split(path.delimiter), '/Applications/Google Chrome.app/Contents/MacOS', '/Applications/Chromium.app/Contents/MacOS'];
 
-/** Path of the program; the environment variable of that name has the first word. A missing one stops the script. */
+/** Path of the program: the environment variable of that name, else the first found. A missing one stops the script. */
 function find(variable) {
   const set = process.env[variable];
   const candidates = set ? [set] : names[variable].flatMap((name) => folders.map((folder) => path.join(folder, name)));
@@ -21,14 +21,14 @@ export const chromium = () => find('CHROMIUM');
 /** Path of chromedriver. */
 export const chromedriver = () => find('CHROMEDRIVER');
 
-/** The command line flags, read from where wasm-bindgen's test runner takes them too. */
+/** The command line flags, from the file that wasm-bindgen's test runner reads too. */
 export function flags() {
   return JSON.parse(readFileSync(at('tests', 'webdriver.json'), 'utf8'))['goog:chromeOptions'].args;
 }
 
 /**
- * Variables that tell the browser its Vulkan driver: WebGL and WebGPU share one there, and it must be Chromium's own SwiftShader;
- * Mesa's, where it is installed, gives no WebGL.
+ * Variables that name the browser's Vulkan driver. WebGL and WebGPU share it. It must be Chromium's own SwiftShader:
+ * with Mesa's, where installed, there is no WebGL.
  */
 export function vulkan() {
   const folders = [path.dirname(realpathSync(chromium())), '/usr/lib/chromium', '/usr/lib64/chromium'];

@@ -1,10 +1,8 @@
 // npm run check: formatting, lints and types. Nothing is run, nothing is changed.
 import { buildLibrary } from './library.mjs';
 import { at, main, run, say, Stop } from './step.mjs';
-import { ensureToolchain } from './toolchain.mjs';
 
 await main(async () => {
-  await ensureToolchain();
   await buildLibrary();
   const checks = [
     ['cargo', 'fmt', '--all', '--check'],

@@ -1,15 +1,16 @@
-// npm run data: simulates the project's pairs of character and garment into out/pairs, with a report and a contact sheet of each.
+// npm run data: simulates the project's pairs of character and garment into out/pairs, with a report and a contact
+// sheet of each.
 //   npm run data                           all ten pairs, 80 poses each
 //   npm run data -- andy-tshirt fox-cape   only these
-//   npm run data -- --full                 three of them at full size: 1,300 poses each, and mixed ones to learn from
+//   npm run data -- --full                 three of them at full size: 1,300 poses each, and mixed poses for training
 //   npm run data -- --on figure.glb --kind tshirt --mixed 300   a character of your own, with its own clips
-// Everything already there is kept: a run that was cut off goes on where it stopped.
+// What is already there is kept: a run that was cut off continues where it stopped.
 import { existsSync, mkdirSync } from 'node:fs';
 import { basename } from 'node:path';
 import { parseArgs } from 'node:util';
 import { Stop, at, main, need, say } from './step.mjs';
 
-/** The pairs; of those that are wanted at full size, too, how many mixed poses. */
+/** The pairs, with the number of mixed poses for those that `--full` makes. */
 const PAIRS = {
   'andy-tshirt': { mixed: 0 },
   'andy-dress': {},
@@ -22,13 +23,16 @@ const PAIRS = {
   'sphere-sheet': {},
   'box-sheet': {},
 };
-/** Poses of a dataset, evenly spread over the frames of its clips at `RATE` a second. A full one adds to a small one. */
+/** Poses of a dataset, spread evenly over the frames of its clips at `RATE` per second. A full one extends a small. */
 const POSES = { small: 80, full: 1300 };
 const RATE = 10;
 const VERTICES = '2100';
 /** Poses simulated twice for the noise floor. */
 const TWINS = '8';
-/** Share of the vertices that may be inside the body where it passes into itself: of our own characters, whose motion avoids it, none. */
+/**
+ * Share of the vertices that may be inside the body where it passes into itself. The motion of our own characters
+ * avoids that: none.
+ */
 const PINCHED = { own: '0', others: '0.03' };
 
 const ctsn = (...list) => need(at('target/release/ctsn'), list);
@@ -50,7 +54,7 @@ await main(async () => {
     allowPositionals: true,
     options: { full: { type: 'boolean' }, on: { type: 'string' }, kind: { type: 'string' }, mixed: { type: 'string' } },
   });
-  await need('cargo', ['build', '--release', '--locked', '-p', 'ctsn-author']);
+  await need('cargo', ['build', '--release', '--locked', '-p', 'ctsn']);
   mkdirSync(at('out/pairs'), { recursive: true });
   const poses = values.full ? POSES.full : POSES.small;
   if (values.on) {

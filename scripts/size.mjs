@@ -38,8 +38,6 @@ export const budget = JSON.parse(readFileSync(at('scripts', 'budget.json'), 'utf
 if (import.meta.url === pathToFileURL(process.argv[1] ?? '').href) {
   await main(async () => {
     const { buildLibrary } = await import('./library.mjs');
-    const { ensureToolchain } = await import('./toolchain.mjs');
-    await ensureToolchain();
     await buildLibrary();
     const measured = await measure();
     console.table(Object.fromEntries(Object.entries(measured).map(([part, { raw, brotli }]) => [part,

@@ -18,7 +18,7 @@ export function say(text) {
 /** Ends a script with a message for the person at the terminal, without a stack trace. */
 export class Stop extends Error {}
 
-const bins = [at('node_modules', '.bin'), at('target', 'tools', 'bin')].join(path.delimiter);
+const bins = at('node_modules', '.bin');
 
 /**
  * Runs a program to its end and answers { status, output }; `output` is what it wrote when `capture` or `tee` is set.
@@ -52,6 +52,12 @@ export async function need(program, args, options = {}) {
   if (status === 0) return output;
   if (options.capture) process.stderr.write(output);
   throw new Stop(`\`${[program, ...args].join(' ')}\` ended with ${status}.`);
+}
+
+/** Waits for all of the steps, then stops the script if one failed: its message is the last on the screen. */
+export async function all(steps) {
+  const failed = (await Promise.allSettled(steps)).find(({ status }) => status === 'rejected');
+  if (failed) throw failed.reason;
 }
 
 /** Runs a script's main function: a `Stop` becomes one line and exit code 1, everything else keeps its stack. */

@@ -3,7 +3,7 @@ import { existsSync, mkdirSync, readFileSync, rmSync } from 'node:fs';
 import { chromedriver, chromium, vulkan } from './browser.mjs';
 import { buildLibrary } from './library.mjs';
 import { at, main, need, run, say, Stop } from './step.mjs';
-import { ensureToolchain } from './toolchain.mjs';
+import { ensureRust } from './toolchain.mjs';
 
 /** `cargo test`, natively or in the browser: the sum of its result lines. */
 async function cargo(args, env = {}) {
@@ -31,21 +31,24 @@ function settle(status, passed, failed) {
 
 const suites = {
   // The physical tests print what they measured beside what is expected.
-  'native: the workspace': () => cargo(['--workspace', '--', '--show-output']),
-  'browser: the core as WebAssembly with simd128': () =>
-    cargo(['--package', 'ctsn-tests', '--target', 'wasm32-unknown-unknown'], {
+  'native: the workspace': () => cargo(['--no-fail-fast', '--', '--show-output']),
+  'browser: the core as WebAssembly with simd128': async () => {
+    await need('cargo', ['build', '--package', 'ctsn-bindgen', '--profile', 'tool', '--features', 'test-runner']);
+    return cargo(['--package', 'ctsn-tests', '--target', 'wasm32-unknown-unknown'], {
       ...vulkan(),
-      CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUNNER: 'wasm-bindgen-test-runner',
+      CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUNNER: at('target', 'tool', 'test-runner'),
       CHROMEDRIVER: chromedriver(),
       WASM_BINDGEN_TEST_TIMEOUT: '600',
-    }),
+    });
+  },
   'Node: the npm package': async () => {
     await buildLibrary();
     return vitest('package', 'oldest three');
   },
   'browser: the package on WebGPU, the demo site': async () => {
-    // As the first suite built it: by itself, with fewer features of its dependencies, all of them would be compiled once more.
-    await need('cargo', ['test', '--release', '--workspace', '--no-run']);
+    // As the first suite built it: by itself, with fewer features of its dependencies, all of them would be compiled
+    // once more.
+    await need('cargo', ['test', '--release', '--no-run']);
     await need('vite', ['build', at('www'), '--logLevel', 'warn']);
     return vitest('browser');
   },
@@ -54,7 +57,7 @@ const suites = {
 await main(async () => {
   chromium();
   chromedriver();
-  await ensureToolchain();
+  await ensureRust();
   mkdirSync(at('out'), { recursive: true });
   const results = [];
   for (const [name, suite] of Object.entries(suites)) {

@@ -1,4 +1,5 @@
-// What a clean clone needs before anything can be built; each piece is looked for first and installed only when missing.
+// What a clean clone needs before anything can be built; each piece is looked for first and installed only when
+// missing.
 import { existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { at, need, run, say, Stop } from './step.mjs';
 
@@ -8,7 +9,7 @@ export async function ensurePackages() {
   const installed = at('node_modules', '.ctsn-lock.json');
   if (existsSync(installed) && readFileSync(installed, 'utf8') === lock) return;
   say('installing npm packages');
-  await need('npm', ['ci', '--no-audit', '--no-fund']);
+  await need('npm', ['ci', '--no-audit', '--no-fund'], { capture: true });
   writeFileSync(installed, lock);
 }
 
@@ -25,29 +26,4 @@ export async function ensureRust() {
   if (added.status !== 0) {
     throw new Stop('the Rust target wasm32-unknown-unknown is missing, and `rustup target add wasm32-unknown-unknown` failed. See https://rustup.rs.');
   }
-}
-
-/** The version of wasm-bindgen in Cargo.lock; its command line tools must be of the same. */
-function bindgenVersion() {
-  const found = /name = "wasm-bindgen"\nversion = "([^"]+)"/.exec(readFileSync(at('Cargo.lock'), 'utf8').replaceAll('\r', ''));
-  if (!found) throw new Stop('Cargo.lock names no wasm-bindgen.');
-  return found[1];
-}
-
-/** `wasm-bindgen` and `wasm-bindgen-test-runner` in target/tools/bin. */
-export async function ensureBindgen() {
-  const version = bindgenVersion();
-  const present = await run(at('target', 'tools', 'bin', 'wasm-bindgen'), ['--version'], { capture: true });
-  if (present.output.trim() === `wasm-bindgen ${version}`) return;
-  say(`compiling wasm-bindgen-cli ${version} into target/tools (once, a few minutes)`);
-  // Optimisation level 1: a third of the compile time, and our modules are small.
-  await need('cargo', ['install', 'wasm-bindgen-cli', '--version', `=${version}`, '--root', at('target', 'tools'), '--force',
-    '--bin', 'wasm-bindgen', '--bin', 'wasm-bindgen-test-runner'], { env: { CARGO_PROFILE_RELEASE_OPT_LEVEL: '1' } });
-}
-
-/** All of it, in the order in which it can fail soonest. */
-export async function ensureToolchain() {
-  await ensureRust();
-  await ensurePackages();
-  await ensureBindgen();
 }

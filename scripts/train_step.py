@@ -1,12 +1,12 @@
-"""One optimisation step (forward, backward, Adam) of `ctsn bench --train` against the same step in PyTorch with PyTorch Geometric.
+"""One optimisation step (forward, backward, Adam): `ctsn bench --train` against PyTorch with PyTorch Geometric.
 
 Python is needed for this comparison only:  pip install torch torch_geometric numpy
     python scripts/train_step.py [--ctsn target/release/ctsn] [--vertices 4000 5000] [--rounds 5] [--threads 2]
 
-Both take the mesh, the sizes and the batch from the model file that `ctsn bench --write-model` leaves. Runs alternate, so that whatever
-else the machine does slows both; the ratio is the median over the rounds. On a busy machine, --cpu compares the processor time of one
-thread instead of the time that passes. PyTorch runs the batch both as one disjoint union of graphs
-and pose by pose, and the faster of the two counts.
+Both take the mesh, the sizes and the batch from the model file that `ctsn bench --write-model` leaves. Runs
+alternate, so that whatever else the machine does slows both; the ratio is the median over the rounds. On a busy
+machine, --cpu compares the processor time of one thread instead of the elapsed time. PyTorch runs the batch both as
+one disjoint union of graphs and pose by pose; the faster of the two counts.
 """
 
 import argparse, json, os, re, resource, statistics, struct, subprocess, tempfile, time

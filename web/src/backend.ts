@@ -1,6 +1,6 @@
 import { ClothBuffers } from './buffers.js';
 import { CtsnError } from './error.js';
-import { adopt, describe, ownDevice } from './gpu.js';
+import { adopt, describe, lossOf, ownDevice } from './gpu.js';
 import { fromCore, GpuModel, Streams, type Predictor } from './raw.js';
 
 /** Where a model computes. */
@@ -12,7 +12,7 @@ export type BackendChoice = 'auto' | Backend;
 /** Milliseconds per prediction, as measured when `auto` chose. */
 export type Measured = Readonly<Record<Backend, number>>;
 
-/** Seconds between attempts to get a device of our own again. */
+/** Seconds to wait before each attempt to get a device of our own again. */
 const PATIENCE = [0, 1, 2, 4, 8, 16, 32];
 
 /** The weights of a model on a device, and what was allocated for its cloths. */
@@ -77,52 +77,58 @@ export class Switch {
   measured: Measured | undefined;
 
   readonly #cpu: Predictor;
-  readonly #rest: () => void;
+  readonly #aside: <T>(work: () => T) => T;
   readonly #changed: () => void;
-  /** Counts the decisions: what was begun under an earlier one has no say. */
-  #decision = 0;
+  /**
+   * The decision in force. The next one aborts it: what was begun under it has no say, and its listeners are removed.
+   */
+  #decision = new AbortController();
 
-  /** `rest` writes a pose to measure with; `changed` hears of every change. */
-  constructor(cpu: Predictor, rest: () => void, changed: () => void) {
+  /** `aside` runs predictions of a pose of ours unseen by callers; `changed` hears of every change. */
+  constructor(cpu: Predictor, aside: <T>(work: () => T) => T, changed: () => void) {
     this.#cpu = cpu;
-    this.#rest = rest;
+    this.#aside = aside;
     this.#changed = changed;
   }
 
   async choose(choice: BackendChoice, device?: GPUDevice): Promise<void> {
-    const decision = ++this.#decision;
+    const decision = this.#decide();
     this.#leave(undefined);
     if (choice === 'cpu') return;
     try {
       await this.#open(decision, choice, device);
     } catch (error) {
-      if (decision === this.#decision) this.#leave(messageOf(error));
+      if (!decision.aborted) this.#leave(messageOf(error));
     }
   }
 
-  /** Back to the CPU: the device failed. If it was ours and is lost, another one is asked for. */
+  /** Back to the CPU: the device failed. */
   fail(error: unknown): void {
-    const decision = ++this.#decision;
-    const { running } = this;
-    this.#leave(messageOf(error));
-    if (running?.own) void running.side.device.lost.then(() => this.#recover(decision));
+    if (this.running) this.#leave(messageOf(error));
   }
 
   dispose(): void {
-    this.#decision++;
+    this.#decision.abort();
     this.running?.side.dispose();
     this.running = undefined;
   }
 
-  async #open(decision: number, choice: BackendChoice, lent?: GPUDevice): Promise<void> {
+  #decide(): AbortSignal {
+    this.#decision.abort();
+    this.#decision = new AbortController();
+    return this.#decision.signal;
+  }
+
+  async #open(decision: AbortSignal, choice: BackendChoice, lent?: GPUDevice): Promise<void> {
     const device = lent ?? (await ownDevice());
     this.adapter = describe(device.adapterInfo);
     const side = await GpuSide.open(this.#cpu, device);
     try {
       const buffers = await side.allocate();
-      const slower = choice === 'auto' && decision === this.#decision && (await this.#measure(buffers));
-      if (decision !== this.#decision) return side.dispose();
+      const slower = choice === 'auto' && !decision.aborted && (await this.#measure(buffers));
+      if (decision.aborted) return side.dispose();
       if (slower) throw new CtsnError('slower', slower);
+      lossOf(device).throwIfAborted();
       this.running = { side, buffers, own: lent === undefined };
       this.reason = undefined;
       this.#watch(decision, this.running);
@@ -133,17 +139,23 @@ export class Switch {
     }
   }
 
-  #watch(decision: number, { side: { device }, own }: Running): void {
-    const fail = (error: unknown) => decision === this.#decision && this.fail(error);
-    void device.lost.then(({ reason, message }) => fail(new CtsnError('lost', `the GPU device is lost: ${message || reason}`)));
+  /** Leaves a device that fails. If it is ours and is lost, another one is asked for. */
+  #watch(decision: AbortSignal, { side: { device }, own }: Running): void {
+    const loss = lossOf(device);
+    const lost = () => {
+      this.fail(loss.reason);
+      // Whoever heard of that change may have decided already.
+      if (own && !decision.aborted) void this.#recover(this.#decide());
+    };
+    loss.addEventListener('abort', lost, { signal: decision });
     // On a device of the page errors may be the page's; ours are caught where they can arise.
-    if (own) device.addEventListener('uncapturederror', ({ error }) => fail(error));
+    if (own) device.addEventListener('uncapturederror', ({ error }) => this.fail(error), { signal: decision });
   }
 
-  async #recover(decision: number): Promise<void> {
+  async #recover(decision: AbortSignal): Promise<void> {
     for (const seconds of PATIENCE) {
       await new Promise((resolve) => setTimeout(resolve, 1000 * seconds));
-      if (decision !== this.#decision) return;
+      if (decision.aborted) return;
       try {
         return await this.#open(decision, 'webgpu');
       } catch {
@@ -160,22 +172,28 @@ export class Switch {
     if (running) this.#changed();
   }
 
-  /** Why the CPU is to be preferred, if it is: a few frames each, submitted as an animation would, and the last one awaited. */
+  /**
+   * Why the CPU is to be preferred, if it is. A few predictions each are submitted, as an animation would, and awaited.
+   */
   async #measure(buffers: ClothBuffers): Promise<string | undefined> {
-    this.#rest();
-    const onCpu = (frames: number) => time(frames, () => this.#cpu.predict(Streams.Both), () => Promise.resolve());
-    const onGpu = (frames: number) => time(frames, () => buffers.predict(this.#cpu, Streams.Both), () => buffers.read());
+    // `time` makes all its calls before it first waits, so that each measurement is aside as a whole.
+    const predict = () => this.#cpu.predict(Streams.Both);
+    const submit = () => buffers.predict(this.#cpu, Streams.Both);
+    const onCpu = (calls: number) => this.#aside(() => time(calls, predict, () => Promise.resolve()));
+    const onGpu = (calls: number) => this.#aside(() => time(calls, submit, () => buffers.read()));
     await onCpu(1);
     const cpu = await onCpu(4);
-    // With a single frame the way back weighs most; where even that cannot explain the difference, nobody waits for more.
+    // In a single prediction the way back weighs most. Where that does not explain the difference, measuring ends
+    // early.
     const single = await onGpu(1);
     const webgpu = single > 10 * cpu + 20 ? single : await onGpu(4);
     this.measured = { cpu, webgpu };
-    return webgpu < cpu ? undefined : `the CPU is faster here: ${cpu.toFixed(1)} ms a prediction, the GPU ${webgpu.toFixed(1)} ms`;
+    if (webgpu < cpu) return undefined;
+    return `the CPU is faster here: ${cpu.toFixed(1)} ms a prediction, the GPU ${webgpu.toFixed(1)} ms`;
   }
 }
 
-/** Milliseconds per call of `work`, with the wait for the end. */
+/** Milliseconds per call of `work`, the wait for `end` included. */
 async function time(calls: number, work: () => void, end: () => Promise<unknown>): Promise<number> {
   const start = performance.now();
   for (let i = 0; i < calls; i++) work();
@@ -183,7 +201,7 @@ async function time(calls: number, work: () => void, end: () => Promise<unknown>
   return (performance.now() - start) / calls;
 }
 
-/** Of an `Error`, or of a `GPUError`, which is none. */
+/** Of an `Error`, or of a `GPUError`, which is not an `Error`. */
 function messageOf(error: unknown): string {
   return (error as Partial<Error> | undefined)?.message ?? String(error);
 }

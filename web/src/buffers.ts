@@ -1,8 +1,9 @@
 import { fromCore, type GpuPredictor, type Predictor, type Streams } from './raw.js';
 
 /**
- * One cloth on the GPU: buffers that hold its last prediction, tightly packed, in metres, fit to be vertex or storage buffers
- * of the same device. Only `dispose()` destroys them: their own `destroy()` does nothing, as a renderer may call it.
+ * One cloth on the GPU: buffers that hold its last prediction, tightly packed, in metres. They can be used as vertex or
+ * storage buffers of the same device. Only `dispose()` destroys them; their own `destroy()` does nothing, because a
+ * renderer may call it.
  */
 export class ClothBuffers {
   /** Tells this answer of `predictCloth` from arrays. */
@@ -11,7 +12,9 @@ export class ClothBuffers {
   readonly positions: GPUBuffer;
   /** World unit normals of the cloth vertices [3·n]. */
   readonly normals: GPUBuffer;
-  /** Positions and normals of the drawn vertices [3·d]: `positions` and `normals` where the model has no surface of its own. */
+  /**
+   * Positions and normals of the drawn vertices [3·d]; `positions` and `normals` where the model has no drawn surface.
+   */
   readonly drawnPositions: GPUBuffer;
   readonly drawnNormals: GPUBuffer;
   /** The device they are on. */
@@ -24,7 +27,8 @@ export class ClothBuffers {
     this.#predictor = predictor;
     this.device = device;
     [this.positions, this.drawnPositions, this.normals, this.drawnNormals] = predictor.buffers();
-    for (const buffer of this.#all()) Object.defineProperty(buffer, 'destroy', { value: () => undefined, configurable: true });
+    const nothing = { value: () => undefined, configurable: true };
+    for (const buffer of this.#all()) Object.defineProperty(buffer, 'destroy', nothing);
   }
 
   /** True after `dispose()` of these buffers or of their model. */
@@ -32,12 +36,12 @@ export class ClothBuffers {
     return this.#predictor === undefined;
   }
 
-  /** Of the prediction last submitted: `Frame.confidence`. */
+  /** `Frame.confidence` of the prediction last submitted. */
   get confidence(): number {
     return this.#predictor?.confidence() ?? 1;
   }
 
-  /** @internal Submits a prediction for the pose that `cpu` holds; false if that failed, and then `cpu` knows why. */
+  /** @internal Submits a prediction of the pose that `cpu` holds. False if that failed: then `cpu` knows why. */
   predict(cpu: Predictor, streams: Streams): boolean {
     return this.#predictor!.predict(cpu, streams);
   }

@@ -15,7 +15,10 @@ export interface DownloadOptions {
 }
 
 /** Fetches a file to its end, reporting true byte sizes; `file:` addresses work in Node. */
-export async function download(address: string | URL, { onProgress, request }: DownloadOptions = {}): Promise<Uint8Array<ArrayBuffer>> {
+export async function download(
+  address: string | URL,
+  { onProgress, request }: DownloadOptions = {},
+): Promise<Uint8Array<ArrayBuffer>> {
   const local = readLocal(address);
   if (local) {
     onProgress?.({ loaded: local.length, total: local.length });
@@ -27,12 +30,17 @@ export async function download(address: string | URL, { onProgress, request }: D
   };
   const response = await fetch(address, request).catch(refuse('no answer'));
   if (!response.ok) {
-    throw new CtsnError('fetch', `${String(address)}: HTTP ${response.status} ${response.statusText}`.trim(), { status: response.status });
+    const { status, statusText } = response;
+    throw new CtsnError('fetch', `${String(address)}: HTTP ${status} ${statusText}`.trim(), { status });
   }
   return collect(response, onProgress, refuse('the answer broke off'));
 }
 
-async function collect(response: Response, onProgress: DownloadOptions['onProgress'], refuse: (cause: unknown) => never): Promise<Uint8Array<ArrayBuffer>> {
+async function collect(
+  response: Response,
+  onProgress: DownloadOptions['onProgress'],
+  refuse: (cause: unknown) => never,
+): Promise<Uint8Array<ArrayBuffer>> {
   const announced = Number(response.headers.get('content-length'));
   const total = announced > 0 && !response.headers.get('content-encoding') ? announced : undefined;
   if (!response.body) return new Uint8Array(await response.arrayBuffer().catch(refuse));
@@ -58,7 +66,10 @@ interface NodeProcess {
   getBuiltinModule?(name: 'node:fs'): { readFileSync(file: URL): Uint8Array };
 }
 
-/** Node's fetch refuses `file:`; asked for at run time, so that no bundler for the web sees an import. */
+/**
+ * Node's fetch refuses `file:`. Node's file system is looked up at run time, so that no bundler for the web sees an
+ * import.
+ */
 function readLocal(address: string | URL): Uint8Array<ArrayBuffer> | undefined {
   const fs = (globalThis as { process?: NodeProcess }).process?.getBuiltinModule?.('node:fs');
   if (!fs || !String(address).startsWith('file:')) return undefined;

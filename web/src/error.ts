@@ -1,11 +1,11 @@
 /**
- * What went wrong, as a stable word. The codes a model file or a pose is refused with come from the network's core;
- * the ones listed by name arise in this package.
+ * What went wrong, as a stable word. The codes named here arise in this package; those for which a model file or a pose
+ * is refused come from the network's core.
  */
 export type CtsnErrorCode =
   /** A model or the module could not be fetched; `status` holds the HTTP status when there was an answer. */
   | 'fetch'
-  /** The WebAssembly module does not compile or start: no simd128, or a content security policy without 'wasm-unsafe-eval'. */
+  /** The WebAssembly module does not start: no simd128, or a content security policy without 'wasm-unsafe-eval'. */
   | 'wasm'
   /** An argument is of the wrong kind. */
   | 'argument'
@@ -17,7 +17,7 @@ export type CtsnErrorCode =
   | 'not_finite'
   /** The model was used after `dispose()`. */
   | 'disposed'
-  /** No GPU to compute on, or no buffers on it: only where buffers are asked for, as the CPU answers everything else. */
+  /** Buffers were asked for where no GPU computes. The CPU answers everything else. */
   | 'no_device'
   | (string & {});
 
@@ -31,7 +31,11 @@ export class CtsnError extends Error {
   /** Name of the joint, for the code `missing_joint`. */
   readonly joint?: string;
 
-  constructor(code: CtsnErrorCode, message: string, details: { status?: number; joint?: string; cause?: unknown } = {}) {
+  constructor(
+    code: CtsnErrorCode,
+    message: string,
+    details: { status?: number; joint?: string; cause?: unknown } = {},
+  ) {
     super(message, 'cause' in details ? { cause: details.cause } : undefined);
     this.code = code;
     if (details.status !== undefined) this.status = details.status;

@@ -2,20 +2,31 @@ import { CtsnError } from './error.js';
 import { Gpu } from './raw.js';
 
 const adopted = new WeakMap<GPUDevice, Promise<Gpu>>();
+const losses = new WeakMap<GPUDevice, AbortSignal>();
 let own: Promise<GPUDevice> | undefined;
 
-/** The module's side of a device, with the pipelines compiled on it: one for all models of a page. */
+/**
+ * The module's side of a device, with the pipelines compiled on it: one for all models of a page. An adoption that
+ * failed may be tried again.
+ */
 export function adopt(device: GPUDevice): Promise<Gpu> {
   let gpu = adopted.get(device);
-  if (!gpu) adopted.set(device, (gpu = lend(device)));
+  if (!gpu) {
+    gpu = handOver(device).catch((error: unknown) => {
+      adopted.delete(device);
+      throw error;
+    });
+    adopted.set(device, gpu);
+  }
   return gpu;
 }
 
 /**
- * wgpu takes no device of the page, but reads `navigator.gpu` at one known moment, at once and only once: for that moment
- * an own property of `navigator`, whose only adapter has only this device, hides the real one.
+ * wgpu cannot be given a device; it asks `navigator.gpu` for one, and reads that property once, during this very call.
+ * So for the length of the call an own property of `navigator` hides the real one: its only adapter has only this
+ * device.
  */
-function lend(device: GPUDevice): Promise<Gpu> {
+function handOver(device: GPUDevice): Promise<Gpu> {
   const { features, limits, adapterInfo } = device;
   const adapter = { features, limits, info: adapterInfo, requestDevice: () => Promise.resolve(device) };
   const { wgslLanguageFeatures } = navigator.gpu;
@@ -44,11 +55,28 @@ async function request(): Promise<GPUDevice> {
   if (!adapter) throw new CtsnError('no_adapter', 'WebGPU finds no adapter on this machine');
   const { maxBufferSize, maxStorageBufferBindingSize } = adapter.limits;
   // WebGPU's defaults are enough for everything but the weights of large models.
-  const device = await adapter.requestDevice({ requiredLimits: { maxBufferSize, maxStorageBufferBindingSize } }).catch((cause: unknown) => {
+  const requiredLimits = { maxBufferSize, maxStorageBufferBindingSize };
+  const device = await adapter.requestDevice({ requiredLimits }).catch((cause: unknown) => {
     throw new CtsnError('no_device', `${describe(adapter.info)} gives no device: ${String(cause)}`, { cause });
   });
   void device.lost.then(() => (own = undefined));
   return device;
+}
+
+/**
+ * Aborted when the device is lost; its `reason` is the error. Unlike whoever waits for the promise `device.lost`, a
+ * listener can be removed.
+ */
+export function lossOf(device: GPUDevice): AbortSignal {
+  let loss = losses.get(device);
+  if (!loss) {
+    const controller = new AbortController();
+    losses.set(device, (loss = controller.signal));
+    void device.lost.then(({ reason, message }) => {
+      controller.abort(new CtsnError('lost', `the GPU device is lost: ${message || reason}`));
+    });
+  }
+  return loss;
 }
 
 /** What an adapter tells of itself. */

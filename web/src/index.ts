@@ -1,5 +1,6 @@
 export { loadModel, type GpuLoadOptions, type LoadOptions, type ModelSource } from './load.js';
-export { ClothModel, type CpuClothModel, type Frame, type PredictOptions, type StreamChoice, type Surface } from './model.js';
+export { ClothModel, type CpuClothModel, type Frame } from './model.js';
+export type { PredictOptions, StreamChoice, Surface } from './model.js';
 export { ClothBuffers } from './buffers.js';
 export type { Backend, BackendChoice, Measured } from './backend.js';
 export { CtsnError, type CtsnErrorCode } from './error.js';

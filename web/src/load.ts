@@ -13,8 +13,8 @@ export interface LoadOptions extends DownloadOptions {
 /** How to load a model that may compute on the GPU. */
 export interface GpuLoadOptions extends LoadOptions {
   /**
-   * `auto` measures the GPU and the CPU and takes the faster one, `webgpu` takes the GPU where there is one. Either way the CPU
-   * does instead where there is none: `model.backend` and `model.fallback` tell.
+   * `auto` measures the GPU and the CPU and takes the faster one; `webgpu` takes the GPU. Where there is no GPU the CPU
+   * computes: `model.backend` and `model.fallback` tell.
    */
   backend: BackendChoice;
   /** A device of the page, such as its renderer's, which is never destroyed; one of our own if not given. */
@@ -25,9 +25,15 @@ export interface GpuLoadOptions extends LoadOptions {
  * Loads a model file from an address or from its bytes. The first call of a page also starts the WebAssembly module.
  * Without a `backend` the CPU computes, and every answer is there at once.
  */
-export async function loadModel(source: ModelSource, options?: LoadOptions & { backend?: 'cpu' | undefined }): Promise<CpuClothModel>;
+export async function loadModel(
+  source: ModelSource,
+  options?: LoadOptions & { backend?: 'cpu' | undefined },
+): Promise<CpuClothModel>;
 export async function loadModel(source: ModelSource, options: GpuLoadOptions): Promise<ClothModel>;
-export async function loadModel(source: ModelSource, options: LoadOptions & { backend?: BackendChoice | undefined; device?: GPUDevice | undefined } = {}): Promise<ClothModel> {
+export async function loadModel(
+  source: ModelSource,
+  options: LoadOptions & { backend?: BackendChoice | undefined; device?: GPUDevice | undefined } = {},
+): Promise<ClothModel> {
   const [memory, bytes] = await Promise.all([startModule(options.wasm), read(source, options)]);
   const model = new ClothModel(readModel(bytes), memory);
   try {

@@ -4,23 +4,23 @@ import { CtsnError } from './error.js';
 import { writePose, type Pose } from './pose.js';
 import { fromCore, Streams, type Predictor } from './raw.js';
 
-/** Which streams of the network act: both, the skeleton-based one only, or none (plain skinning). */
+/** Which streams of the network act: both, the skeleton stream only, or none (plain skinning). */
 export type StreamChoice = 'both' | 'skeleton' | 'none';
 
 /** How to predict. */
 export interface PredictOptions {
   streams?: StreamChoice | undefined;
-  /** `cpu`: this one on the CPU and at once, wherever the model computes otherwise. */
+  /** `cpu`: this prediction on the CPU and at once, wherever the model computes its others. */
   backend?: 'cpu' | undefined;
-  /** `gpu`: leave the prediction on the GPU, if the model computes there. */
+  /** `gpu`: leave the prediction in the GPU's buffers, if the model computes there. */
   output?: 'arrays' | 'gpu' | undefined;
-  /** Into which buffers to predict on the GPU, if not the model's own. */
+  /** Buffers to predict into on the GPU, instead of the model's own. */
   buffers?: ClothBuffers | undefined;
 }
 
 /**
- * A predicted frame. From the CPU: views into the module's memory, valid until the next call on any model. Read back from
- * the GPU: arrays of its own.
+ * A prediction as arrays. From the CPU they are views into the module's memory, valid until the next call on any model.
+ * Read back from the GPU they are the caller's own.
  */
 export interface Frame {
   /** Tells this answer of `predictCloth` from buffers. */
@@ -30,13 +30,13 @@ export interface Frame {
   /** World unit normals of the cloth vertices [3·n]. */
   readonly normals: Float32Array;
   /**
-   * How much of the network's folds the cloth shows: 1 in poses like those of the training, less the further the pose leaves
-   * them, 0 where the cloth is skinned plainly. Always 1 where the model file does not say what poses it has seen.
+   * How much of the network's folds the cloth shows: 1 in poses like those of the training, less in others, 0 where
+   * nothing but plain skinning is left. Always 1 where the model file does not say what poses it was trained on.
    */
   readonly confidence: number;
 }
 
-/** What is drawn of the cloth: vertices split at seams, so that textures have edges where the cloth has none. */
+/** The mesh to draw: the cloth's, its vertices split at seams, so that a texture may end where the cloth does not. */
 export interface Surface {
   /** Drawn vertex -> cloth vertex [d]. */
   readonly vertex: Uint32Array;
@@ -46,11 +46,11 @@ export interface Surface {
   readonly triangles: Uint32Array;
 }
 
-const chosen = { both: Streams.Both, skeleton: Streams.Skeleton, none: Streams.None };
+const streamsOf = { both: Streams.Both, skeleton: Streams.Skeleton, none: Streams.None };
 
 /**
- * A garment's network, loaded: made by `loadModel`. Dispatches an event `backend` when it begins to compute elsewhere,
- * on a GPU or, after one failed, on the CPU.
+ * A garment's network, made by `loadModel`. Dispatches an event `backend` when it begins to compute elsewhere: on a
+ * GPU, or on the CPU after a GPU failed.
  */
 export class ClothModel extends EventTarget {
   /** Names of the joints, in the order of the pose [J]. */
@@ -63,12 +63,18 @@ export class ClothModel extends EventTarget {
   readonly vertexCount: number;
   /** Triangles of the cloth mesh, one vertex per position [3·t]. */
   readonly triangles: Uint32Array;
-  /** What to draw, where the file tells it apart from the cloth mesh. */
+  /** The mesh to draw, where the file has one beside the cloth mesh. */
   readonly surface: Surface | undefined;
 
   #predictor: Predictor | undefined;
   readonly #memory: WebAssembly.Memory;
-  readonly #frame = { output: 'arrays' as const, positions: new Float32Array(), normals: new Float32Array(), confidence: 1 };
+  /** The CPU's last prediction, as callers hold it. */
+  readonly #prediction = {
+    output: 'arrays' as const,
+    positions: new Float32Array(),
+    normals: new Float32Array(),
+    confidence: 1,
+  };
   readonly #switch: Switch;
   #pose = new Float32Array();
 
@@ -77,7 +83,11 @@ export class ClothModel extends EventTarget {
     super();
     this.#predictor = predictor;
     this.#memory = memory;
-    this.#switch = new Switch(predictor, () => this.#rest(), () => this.dispatchEvent(new Event('backend')));
+    this.#switch = new Switch(
+      predictor,
+      (work) => this.#aside(restPose(this.joints.length), work),
+      () => this.dispatchEvent(new Event('backend')),
+    );
     this.joints = Object.freeze(predictor.joints());
     this.rootIndex = predictor.root();
     this.inverseBind = predictor.inverse_bind();
@@ -96,7 +106,9 @@ export class ClothModel extends EventTarget {
     return this.#switch.running ? 'webgpu' : 'cpu';
   }
 
-  /** Why not on the GPU, where that was asked for: no WebGPU, the CPU is faster, the device was lost, its memory is full. */
+  /**
+   * Why the GPU does not compute although it was asked for: no WebGPU, slower than the CPU, device lost, memory full.
+   */
   get fallback(): string | undefined {
     return this.#switch.reason;
   }
@@ -106,7 +118,7 @@ export class ClothModel extends EventTarget {
     return this.#switch.adapter;
   }
 
-  /** The device in use. */
+  /** The GPU device in use. */
   get device(): GPUDevice | undefined {
     return this.#switch.running?.side.device;
   }
@@ -117,8 +129,9 @@ export class ClothModel extends EventTarget {
   }
 
   /**
-   * Computes elsewhere from now on: on the CPU, on a device (of our own where none is given), or, with `auto`, where it is
-   * faster. Never rejects for want of a GPU: then the CPU computes, and `fallback` says why. Until it resolves, so does the CPU.
+   * Computes elsewhere from now on: on the CPU, on a GPU device (one of our own where none is given), or, with `auto`,
+   * where it is faster. Until this resolves the CPU computes. It does not reject for want of a GPU: the CPU goes on
+   * computing, and `fallback` says why.
    */
   async setBackend(choice: BackendChoice, device?: GPUDevice): Promise<void> {
     if (choice !== 'auto' && choice !== 'cpu' && choice !== 'webgpu') {
@@ -128,85 +141,111 @@ export class ClothModel extends EventTarget {
     await this.#switch.choose(choice, device);
   }
 
-  /** Buffers for a further cloth of this model on the GPU: the weights are shared. */
+  /** Buffers for a further cloth of this model on the GPU; both use the same weights. */
   async createBuffers(): Promise<ClothBuffers> {
     this.#alive();
     const { running } = this.#switch;
-    if (!running) throw new CtsnError('no_device', `the model computes on the CPU: ${this.fallback ?? 'no GPU was asked for'}`);
+    if (!running) {
+      throw new CtsnError('no_device', `the model computes on the CPU: ${this.fallback ?? 'no GPU was asked for'}`);
+    }
     return running.side.allocate();
   }
 
   /**
-   * Predicts the cloth for a pose. On the CPU the answer is there at once; it and its views are the same objects from call to
-   * call, and the views are made anew when the module's memory has grown, which only loading another model does.
-   * On the GPU the answer is a promise of arrays, or, with `output: 'gpu'`, at once the buffers that will hold it.
-   * A GPU that fails loses nothing: the CPU answers.
+   * Predicts the cloth for a pose. On the CPU the answer is there at once. It is the same object at every call, and so
+   * are its views, unless the module's memory has grown meanwhile, as it may when a model is loaded or changes its
+   * backend. On the GPU the answer is a promise of arrays, or, with `output: 'gpu'`, at once the buffers that will hold
+   * it. Where the GPU fails, the CPU answers.
    */
   predictCloth(pose: Pose, options: PredictOptions & { backend: 'cpu' }): Frame;
   predictCloth(pose: Pose, options: PredictOptions & { output: 'gpu' }): Frame | ClothBuffers;
   predictCloth(pose: Pose, options?: PredictOptions & { output?: 'arrays' | undefined }): Frame | Promise<Frame>;
   predictCloth(pose: Pose, options?: PredictOptions): Frame | ClothBuffers | Promise<Frame> {
-    const streams = chosen[options?.streams ?? 'both'];
+    const streams = streamsOf[options?.streams ?? 'both'];
     if (streams === undefined) {
-      throw new CtsnError('argument', `streams: "both", "skeleton" or "none" wanted, "${String(options?.streams)}" found`);
+      const found = String(options?.streams);
+      throw new CtsnError('argument', `streams: "both", "skeleton" or "none" wanted, "${found}" found`);
     }
     const predictor = this.#alive();
     writePose(pose, this.joints, this.#pose);
     const buffers = options?.backend === 'cpu' ? undefined : this.#buffers(options?.buffers);
     if (buffers?.predict(predictor, streams)) return options?.output === 'gpu' ? buffers : this.#read(buffers, streams);
-    if (buffers) this.#fail(fromCore(predictor.take_failure()));
-    return this.#predict(predictor, streams);
+    if (buffers) {
+      this.#fail(fromCore(predictor.take_failure()));
+      // Whoever heard of that may have predicted another pose.
+      this.#alive();
+      writePose(pose, this.joints, this.#pose);
+    }
+    return this.#predict(streams);
   }
 
-  /** Frees the model's memory inside the module and on the GPU; a device is left alone. A second call does nothing. */
+  /** Frees the model's memory in the module and on the GPU, but no device. A second call does nothing. */
   dispose(): void {
     this.#switch.dispose();
     this.#predictor?.free();
     this.#predictor = undefined;
   }
 
-  #predict(predictor: Predictor, streams: Streams): Frame {
+  /** Predicts, on the CPU, the pose that was written. */
+  #predict(streams: Streams): Frame {
+    const predictor = this.#alive();
     if (!predictor.predict(streams)) throw fromCore(predictor.take_failure());
-    this.#frame.confidence = predictor.confidence();
-    return this.#frame;
+    this.#prediction.confidence = predictor.confidence();
+    return this.#prediction;
   }
 
-  /** The buffers asked for, or the model's own, if they are in use now. */
+  /** The buffers asked for, or else the model's own; nothing if the model computes on the CPU or they are gone. */
   #buffers(wanted: ClothBuffers | undefined): ClothBuffers | undefined {
     const { running } = this.#switch;
     const buffers = wanted ?? running?.buffers;
     return running && !buffers!.disposed ? buffers : undefined;
   }
 
-  /** Waits for what was just submitted; if the GPU fails meanwhile, the CPU answers for the same pose. */
+  /** Waits for the prediction just submitted. If the GPU fails meanwhile, the CPU predicts the same pose. */
   async #read(buffers: ClothBuffers, streams: Streams): Promise<Frame> {
+    this.#alive();
     const pose = this.#pose.slice();
     const { confidence } = buffers;
     try {
       const [positions, normals] = await buffers.read();
       return { output: 'arrays', positions, normals, confidence };
     } catch (error) {
-      const predictor = this.#alive();
+      this.#alive();
       // Buffers freed meanwhile, by a change of the backend, are no fault of the device.
       if (!buffers.disposed) this.#fail(error);
-      this.#pose.set(pose);
-      const { positions, normals, confidence } = this.#predict(predictor, streams);
-      return { output: 'arrays', positions: positions.slice(), normals: normals.slice(), confidence };
+      return this.#aside(pose, () => {
+        const { positions, normals, confidence } = this.#predict(streams);
+        return { output: 'arrays', positions: positions.slice(), normals: normals.slice(), confidence };
+      });
     }
   }
 
-  /** What the pose is refused for is thrown; any other failure is the device's. */
+  /** Throws an error that is the pose's. Any other is the device's: the CPU computes from now on. */
   #fail(error: unknown): void {
     if (error instanceof CtsnError && !deviceFaults.has(error.code)) throw error;
     this.#switch.fail(error);
   }
 
-  /** Every joint at the origin. */
-  #rest(): void {
+  /**
+   * Runs `work`, predictions of `pose` at a moment when no caller asked for one. Callers may hold views of the last
+   * prediction, so it is put back.
+   */
+  #aside<T>(pose: Float32Array, work: () => T): T {
     this.#alive();
-    for (let at = 0; at < this.#pose.length; at++) this.#pose[at] = (at % 16) % 5 === 0 ? 1 : 0;
+    const { positions, normals, confidence } = this.#prediction;
+    const [heldPositions, heldNormals] = [positions.slice(), normals.slice()];
+    this.#pose.set(pose);
+    try {
+      return work();
+    } finally {
+      this.#alive();
+      this.#prediction.positions.set(heldPositions);
+      this.#prediction.normals.set(heldNormals);
+      this.#prediction.confidence = confidence;
+    }
   }
 
+  /** The predictor; views are made anew if the memory has grown, as it may whenever the module allocates. */
   #alive(): Predictor {
     if (!this.#predictor) throw new CtsnError('disposed', 'the cloth model was used after dispose()');
     if (this.#pose.buffer !== this.#memory.buffer) this.#view(this.#predictor);
@@ -217,19 +256,24 @@ export class ClothModel extends EventTarget {
     const { buffer } = this.#memory;
     const numbers = 3 * this.vertexCount;
     this.#pose = new Float32Array(buffer, predictor.pose_address(), 16 * this.joints.length);
-    this.#frame.positions = new Float32Array(buffer, predictor.positions_address(), numbers);
-    this.#frame.normals = new Float32Array(buffer, predictor.normals_address(), numbers);
+    this.#prediction.positions = new Float32Array(buffer, predictor.positions_address(), numbers);
+    this.#prediction.normals = new Float32Array(buffer, predictor.normals_address(), numbers);
   }
 }
 
-/** A model that computes on the CPU until told otherwise: every answer is there at once. */
+/** A model on the CPU, where every answer is there at once. */
 export interface CpuClothModel extends ClothModel {
   predictCloth(pose: Pose, options?: PredictOptions): Frame;
   setBackend(choice: 'cpu'): Promise<void>;
 }
 
-/** Codes of the GPU device: not the caller's fault, and the CPU can do instead. */
+/** Codes of failures of the GPU, after which the CPU can go on. */
 const deviceFaults = new Set(['no_adapter', 'no_device', 'limit', 'out_of_memory', 'refused', 'lost', 'missing']);
+
+/** Every joint at the origin [16·J]. */
+function restPose(joints: number): Float32Array {
+  return Float32Array.from({ length: 16 * joints }, (_, at) => ((at % 16) % 5 === 0 ? 1 : 0));
+}
 
 function readSurface(predictor: Predictor): Surface | undefined {
   const vertex = predictor.surface_vertex();

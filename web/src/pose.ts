@@ -4,8 +4,8 @@ import { CtsnError } from './error.js';
 export type Matrix = ArrayLike<number> | { readonly elements: ArrayLike<number> };
 
 /**
- * World matrices of the joints, in metres: 16·J numbers in the order of `ClothModel.joints`, or one matrix per joint name
- * (further names are ignored).
+ * World matrices of the joints, in metres: 16·J numbers in the order of `ClothModel.joints`, or one matrix per joint
+ * name. Names that are no joints are ignored.
  */
 export type Pose = Float32Array | Readonly<Record<string, Matrix>>;
 

@@ -1,6 +1,6 @@
 /**
- * The wall between this package and the generated glue: the only file that imports it.
- * Its twin on the other side is crate/wasm/src/lib.rs.
+ * The boundary to the WebAssembly module: the only file that imports the glue which wasm-bindgen generates. The other
+ * side of it is crate/wasm/src/lib.rs.
  */
 import initialiseGlue, { Gpu, GpuModel, Predictor, Streams, type GpuPredictor } from './glue/ctsn.js';
 import { download } from './download.js';
@@ -15,7 +15,7 @@ export type WasmSource = string | URL | ArrayBuffer | Uint8Array<ArrayBuffer> | 
 let starting: Promise<WebAssembly.Memory> | undefined;
 
 /**
- * Compiles and starts the module, once per page: the source of the first call counts. A start that failed may be tried again.
+ * Compiles and starts the module, once per page, from the first call's source. A start that failed may be tried again.
  */
 export function startModule(source?: WasmSource): Promise<WebAssembly.Memory> {
   starting ??= compile(source).catch((error: unknown) => {
@@ -25,7 +25,10 @@ export function startModule(source?: WasmSource): Promise<WebAssembly.Memory> {
   return starting;
 }
 
-async function compile(source: WasmSource = new URL('./glue/ctsn_bg.wasm', import.meta.url)): Promise<WebAssembly.Memory> {
+/** The bundler must see this very expression to know the file. */
+const beside = () => new URL('./glue/ctsn_bg.wasm', import.meta.url);
+
+async function compile(source: WasmSource = beside()): Promise<WebAssembly.Memory> {
   const module = typeof source === 'string' || source instanceof URL ? await download(source) : source;
   try {
     return (await initialiseGlue({ module_or_path: module })).memory;
@@ -43,7 +46,10 @@ export function readModel(bytes: Uint8Array): Predictor {
   }
 }
 
-/** The core's error, whose `name` is its code, as ours; anything else is a fault in the module and passes through. */
+/**
+ * The core's error, whose `name` is its code, as a `CtsnError`. Anything else is a fault of the module and stays as it
+ * is.
+ */
 export function fromCore(cause: unknown): unknown {
   const refused = cause instanceof Error && !(cause instanceof WebAssembly.RuntimeError);
   return refused ? new CtsnError(cause.name, cause.message) : cause;

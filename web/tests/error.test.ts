@@ -59,13 +59,24 @@ test('a wrong argument', async () => {
 test('poses: wrong length, missing joint, NaN; the model lives on', async () => {
   const { model, poses, positions } = await loadGolden('tiny');
   const refuse = (pose: Pose) => failure(() => model.predictCloth(pose));
-  expect(await refuse(poses[0]!.subarray(1))).toMatchObject({ code: 'joint_count', message: expect.stringMatching(/48.*47/) as string });
+  expect(await refuse(poses[0]!.subarray(1))).toMatchObject({
+    code: 'joint_count',
+    message: expect.stringMatching(/48.*47/) as string,
+  });
   expect(await refuse(new Float32Array())).toMatchObject({ code: 'joint_count' });
   const [first, second, third] = model.joints as [string, string, string];
   const identity = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
-  expect(await refuse({ [first]: identity, [third]: identity })).toMatchObject({ code: 'missing_joint', joint: second, message: expect.stringContaining(second) as string });
-  expect(await refuse({ [first]: identity, [second]: [1, 2], [third]: identity })).toMatchObject({ code: 'joint_count' });
-  expect(await refuse(Float32Array.from(poses[0]!, (value, i) => (i === 17 ? NaN : value)))).toMatchObject({ code: 'not_finite' });
+  expect(await refuse({ [first]: identity, [third]: identity })).toMatchObject({
+    code: 'missing_joint',
+    joint: second,
+    message: expect.stringContaining(second) as string,
+  });
+  expect(await refuse({ [first]: identity, [second]: [1, 2], [third]: identity })).toMatchObject({
+    code: 'joint_count',
+  });
+  expect(await refuse(Float32Array.from(poses[0]!, (value, i) => (i === 17 ? NaN : value)))).toMatchObject({
+    code: 'not_finite',
+  });
   expect(await refuse(poses[0]!.map(() => Infinity))).toMatchObject({ code: 'not_finite' });
   expect(model.predictCloth(poses[0]!).positions[0]).toBeCloseTo(positions[0]![0]!, 5);
   model.dispose();
@@ -115,7 +126,10 @@ test('loading that fails: no such file, no server, a broken connection, no local
   const unanswered = await failure(() => loadModel('http://127.0.0.1:1/'));
   expect(unanswered).toMatchObject({ code: 'fetch' });
   expect(unanswered.status).toBeUndefined();
-  expect(await failure(() => loadModel(`${address}/broken`))).toMatchObject({ code: 'fetch', message: expect.stringContaining('broke off') as string });
+  expect(await failure(() => loadModel(`${address}/broken`))).toMatchObject({
+    code: 'fetch',
+    message: expect.stringContaining('broke off') as string,
+  });
   expect(await failure(() => loadModel(new URL('none.safetensors', import.meta.url)))).toMatchObject({ code: 'fetch' });
   await expect(loadModel(`${address}/small`, { request: { signal: AbortSignal.abort() } })).rejects.toThrow(/abort/);
 });

@@ -2,7 +2,7 @@
 import { readFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 import { loadModel, type CpuClothModel } from 'ctsn';
-import { readTensors, toColumns } from '../../tests/browser/safetensors.js';
+import { addTensors, readTensors, toColumns } from '../../tests/browser/safetensors.js';
 
 const path = (file: string) => fileURLToPath(new URL(`../../tests/golden/${file}`, import.meta.url));
 
@@ -26,6 +26,17 @@ export interface Golden extends Expected {
 /** A golden model, loaded, with what it must answer. */
 export async function loadGolden(name: string): Promise<Golden> {
   return { model: await loadModel(bytesOf(name)), ...readGolden(name) };
+}
+
+/** A golden model that knows what poses it has seen, and a pose so far from them that its confidence in it is 0. */
+export async function loadConfident(): Promise<Golden & { wild: Float32Array }> {
+  const expected = readGolden('small');
+  const wild = expected.poses[0]!.slice();
+  const numbers = (12 * wild.length) / 16;
+  const bound = (value: number) => ({ shape: [numbers], values: new Float32Array(numbers).fill(value) });
+  const model = await loadModel(addTensors(bytesOf('small'), { 'pose.min': bound(-10), 'pose.max': bound(10) }));
+  model.joints.forEach((_, joint) => (wild[16 * joint + 12]! += joint === model.rootIndex ? 0 : 100));
+  return { ...expected, model, wild };
 }
 
 /** What a golden model must answer. */

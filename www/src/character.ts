@@ -1,7 +1,7 @@
 import { AnimationMixer, SkinnedMesh, type AnimationAction, type Group } from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 
-/** Frames per second of the frame numbers this page speaks of. */
+/** Frames of a clip per second, wherever this page counts them. */
 export const RATE = 30;
 
 /** The skinned character of a glTF file and its motion. */

@@ -8,7 +8,7 @@ import { Meter } from './meter.js';
 import type { Panel } from './panel.js';
 import type { Stage } from './stage.js';
 
-/** The running page: character, cloth, controls and stage, one frame after the other. */
+/** The running page: moves the character, predicts the cloth and draws both, once per animation frame. */
 export class RunningDemo {
   readonly meter = new Meter();
   /** Predictions since the page was opened. */
@@ -19,7 +19,7 @@ export class RunningDemo {
   readonly #cloth: Cloth;
   readonly #fabric: Material;
   #changed = true;
-  /** A prediction came back from the GPU and is not drawn yet. */
+  /** Whether a prediction came back from the GPU that is not drawn yet. */
   #arrived = false;
   readonly #mesh = new MeshBasicMaterial({ wireframe: true, color: '#2d4f6b' });
 
@@ -46,11 +46,11 @@ export class RunningDemo {
     this.#tell();
   }
 
-  /** Runs until the page closes. A page at rest draws nothing. */
+  /** Runs until the page closes. While nothing moves, nothing is drawn. */
   run(): void {
     let last: number | undefined;
     this.#stage.renderer.setAnimationLoop((now: number) => {
-      // A page in the background gets no frames; the motion goes on where it stood.
+      // A page in the background gets no animation frames; when it is back, the motion goes on where it stood.
       const seconds = Math.min((now - (last ?? now)) / 1000, 0.1);
       last = now;
       const { playing } = this.#panel.wishes;
@@ -60,7 +60,7 @@ export class RunningDemo {
     });
   }
 
-  /** Predicts the cloth for the character as it stands, and draws both. */
+  /** Predicts the cloth for the pose of the character, and draws both. */
   draw(): void {
     const { wishes } = this.#panel;
     this.#changed = false;
@@ -80,7 +80,7 @@ export class RunningDemo {
     this.#tell();
   }
 
-  /** Settles when the frame asked for last is there. */
+  /** Settles when the prediction asked for last is drawn. */
   async settled(): Promise<void> {
     await this.#cloth.settled();
     this.#render();
@@ -91,7 +91,7 @@ export class RunningDemo {
     this.#stage.render();
   }
 
-  /** The time of a prediction on the GPU is that until it is back. */
+  /** Times the prediction: on the GPU until it is back. */
   #predict(): void {
     const start = performance.now();
     const late = this.#cloth.update(this.#panel.wishes).backend === 'webgpu';
@@ -107,13 +107,15 @@ export class RunningDemo {
     const { backend, adapter, fallback, measured } = this.#cloth.model;
     this.meter.reset();
     this.#changed = true;
-    const figures = measured ? ` Measured: ${measured.webgpu.toFixed(1)} ms, the processor ${measured.cpu.toFixed(1)} ms.` : '';
+    const figures = measured
+      ? ` Measured: ${measured.webgpu.toFixed(1)} ms, the processor ${measured.cpu.toFixed(1)} ms.`
+      : '';
     if (backend === 'cpu') this.#panel.showBackend('Processor', fallback ? `Not WebGPU: ${fallback}.` : '');
     else this.#panel.showBackend(`WebGPU, ${adapter}`, `Read back for WebGL: the cloth shows a frame late.${figures}`);
   }
 
-  /** Freezes the page at a frame of a clip. */
-  freeze(clip: string, frame: number, streams: StreamChoice): void {
+  /** Stops the page at a frame of a clip. */
+  stop(clip: string, frame: number, streams: StreamChoice): void {
     this.#panel.play(false);
     this.#panel.choose(streams);
     this.#character.show(clip, frame / RATE);
@@ -121,7 +123,7 @@ export class RunningDemo {
     this.draw();
   }
 
-  /** The frame that stands on the page. */
+  /** What the page shows now. */
   capture(): Capture {
     const { bones, geometry, matrixWorld, model } = this.#cloth;
     const position = geometry.getAttribute('position') as BufferAttribute;
@@ -141,5 +143,6 @@ export class RunningDemo {
 
 function collect(attribute: BufferAttribute, toWorld: (at: Vector3) => Vector3): number[] {
   const at = new Vector3();
-  return Array.from({ length: attribute.count }, (_, i) => toWorld(at.fromBufferAttribute(attribute, i)).toArray()).flat();
+  const one = (i: number) => toWorld(at.fromBufferAttribute(attribute, i));
+  return Array.from({ length: attribute.count }, (_, i) => one(i).toArray()).flat();
 }

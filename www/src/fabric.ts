@@ -1,4 +1,4 @@
-import { Color, DoubleSide, MeshPhysicalMaterial, type BufferGeometry } from 'three';
+import { Color, DoubleSide, MeshPhysicalMaterial, Vector3, type BufferGeometry } from 'three';
 
 const pattern = /* glsl */ `
   #ifdef USE_UV
@@ -16,7 +16,9 @@ const pattern = /* glsl */ `
   if (!gl_FrontFacing) diffuseColor.rgb *= 0.62;
 `;
 
-/** Woven cloth with thin stripes along the texture's v, darker inside. The pattern is measured in metres on `geometry`. */
+/**
+ * Woven cloth with thin stripes along the texture's v, darker inside. Weave and stripes are as wide as on real cloth.
+ */
 export function createFabric(geometry: BufferGeometry): MeshPhysicalMaterial {
   const material = new MeshPhysicalMaterial({
     color: '#3f6482',
@@ -37,13 +39,16 @@ export function createFabric(geometry: BufferGeometry): MeshPhysicalMaterial {
   material.onBeforeCompile = (shader) => {
     Object.assign(shader.uniforms, uniforms);
     shader.fragmentShader = shader.fragmentShader
-      .replace('#include <common>', '#include <common>\nuniform float fabricMetres, stripeEvery;\nuniform vec3 stripeColour;')
+      .replace(
+        '#include <common>',
+        '#include <common>\nuniform float fabricMetres, stripeEvery;\nuniform vec3 stripeColour;',
+      )
       .replace('#include <color_fragment>', `#include <color_fragment>\n${pattern}`);
   };
   return material;
 }
 
-/** Metres of cloth per unit of texture coordinate: the root of the ratio of both areas. */
+/** Metres of cloth per unit of texture coordinate: the root of cloth area over texture area. */
 function metresPerUnit(geometry: BufferGeometry): number {
   const { position, uv } = geometry.attributes;
   const index = geometry.index;
@@ -51,10 +56,10 @@ function metresPerUnit(geometry: BufferGeometry): number {
   let [cloth, texture] = [0, 0];
   for (let i = 0; i < index.count; i += 3) {
     const [a, b, c] = [index.getX(i), index.getX(i + 1), index.getX(i + 2)];
-    const edge = (to: number) => [position.getX(to) - position.getX(a), position.getY(to) - position.getY(a), position.getZ(to) - position.getZ(a)] as const;
-    const [e, f] = [edge(b), edge(c)];
-    cloth += Math.hypot(e[1] * f[2] - e[2] * f[1], e[2] * f[0] - e[0] * f[2], e[0] * f[1] - e[1] * f[0]);
-    texture += Math.abs((uv.getX(b) - uv.getX(a)) * (uv.getY(c) - uv.getY(a)) - (uv.getX(c) - uv.getX(a)) * (uv.getY(b) - uv.getY(a)));
+    const [corner, right, left] = [a, b, c].map((at) => new Vector3().fromBufferAttribute(position, at));
+    cloth += right!.sub(corner!).cross(left!.sub(corner!)).length();
+    const [u, v] = [(at: number) => uv.getX(at) - uv.getX(a), (at: number) => uv.getY(at) - uv.getY(a)];
+    texture += Math.abs(u(b) * v(c) - u(c) * v(b));
   }
   return texture > 0 ? Math.sqrt(cloth / texture) : 1;
 }

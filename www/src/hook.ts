@@ -1,9 +1,9 @@
 import type { Backend, StreamChoice } from 'ctsn';
 
-/** One frame as it stands on the page: what a test needs to compute it elsewhere, and what came out here. */
+/** What the page shows: the pose, with which a test can compute the cloth elsewhere, and the cloth computed here. */
 export interface Capture {
   clip: string;
-  /** Frame of the clip, at 30 a second. */
+  /** Frame of the clip, 30 a second. */
   frame: number;
   streams: StreamChoice;
   /** Joint names, in the order of the model. */
@@ -18,21 +18,24 @@ export interface Capture {
 }
 
 /**
- * `window.ctsnDemo`: the page's handle for tests and for the curious. `?pose=CLIP:FRAME` in the address freezes the page at a
- * frame (30 a second); `?streams=both|skeleton|none` chooses the source of the cloth, `?backend=cpu|webgpu|auto` where it is computed.
+ * `window.ctsnDemo`: the page's handle for tests and for the curious. In the address, `?pose=CLIP:FRAME` stops the page
+ * at a frame of a clip (30 a second), `?streams=both|skeleton|none` chooses the source of the cloth, and
+ * `?backend=cpu|webgpu|auto` where it is computed.
  */
 export interface Demo {
   /** What went wrong, if anything did. */
   error: string | undefined;
-  /** True once the first frame is drawn. */
+  /** True once the page is set up. */
   ready: boolean;
   /** Clips and their lengths in frames. */
   clips: Record<string, number>;
   /** Predictions so far, and the median of recent ones in milliseconds. */
   predictions: number;
   milliseconds: number;
-  /** Freezes the page at a frame, predicts and draws it, and tells what came out. */
+  /** Stops the page at a frame of a clip, and answers what it then shows. */
   show(clip: string, frame: number, streams?: StreamChoice): Promise<Capture>;
+  /** What the page shows now. */
+  capture(): Promise<Capture>;
   /** Where the cloth is predicted, and why not on the GPU. */
   backend: Backend;
   fallback: string | undefined;
@@ -44,12 +47,12 @@ declare global {
   }
 }
 
-/** The frozen pose the address asks for, if it does. */
+/** The clip and the frame at which the address asks the page to stop, if it does. */
 export function readAddress(address: URL): { clip: string; frame: number } | undefined {
   const pose = address.searchParams.get('pose');
   if (!pose) return undefined;
   const colon = pose.lastIndexOf(':');
   const frame = Number(pose.slice(colon + 1));
-  if (colon < 1 || !Number.isFinite(frame)) throw new Error(`?pose=${pose}: CLIP:FRAME wanted, for example ?pose=walk:12`);
-  return { clip: pose.slice(0, colon), frame };
+  if (colon > 0 && Number.isFinite(frame)) return { clip: pose.slice(0, colon), frame };
+  throw new Error(`?pose=${pose}: CLIP:FRAME wanted, for example ?pose=walk:12`);
 }

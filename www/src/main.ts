@@ -30,7 +30,10 @@ async function load(): Promise<[Character, ClothModel, number]> {
     body.loadAsync(`${base}andy.glb`, ({ loaded, total, lengthComputable }) => {
       showProgress('character', lengthComputable ? { loaded, total } : { loaded });
     }),
-    loadModel(`${base}tshirt.safetensors`, { backend: 'cpu' as BackendChoice, onProgress: (progress) => showProgress('model', progress) }),
+    loadModel(`${base}tshirt.safetensors`, {
+      backend: 'cpu' as BackendChoice,
+      onProgress: (progress) => showProgress('model', progress),
+    }),
   ]);
   return [await Character.parse(glb as ArrayBuffer), model, received.get('model')?.loaded ?? 0];
 }
@@ -44,8 +47,8 @@ async function start(): Promise<void> {
 
   const address = new URL(location.href);
   const streams = (address.searchParams.get('streams') ?? 'both') as StreamChoice;
-  const frozen = readAddress(address);
-  if (frozen) demo.freeze(frozen.clip, frozen.frame, streams);
+  const wanted = readAddress(address);
+  if (wanted) demo.stop(wanted.clip, wanted.frame, streams);
   else panel.choose(streams);
   demo.run();
   const backend = address.searchParams.get('backend');
@@ -58,14 +61,18 @@ async function start(): Promise<void> {
     backend: { get: () => model.backend },
     fallback: { get: () => model.fallback },
   });
+  const capture = async () => {
+    await demo.settled();
+    return demo.capture();
+  };
   Object.assign(hook, {
     clips,
     ready: true,
-    async show(clip: string, frame: number, choice: StreamChoice = 'both') {
-      demo.freeze(clip, frame, choice);
-      await demo.settled();
-      return demo.capture();
+    show(clip: string, frame: number, choice: StreamChoice = 'both') {
+      demo.stop(clip, frame, choice);
+      return capture();
     },
+    capture,
   } satisfies Partial<Demo>);
 }
 

@@ -1,6 +1,6 @@
 import type { BackendChoice, StreamChoice } from 'ctsn';
 
-/** What the controls ask for. */
+/** What the person at the controls asks for. */
 export interface Wishes {
   playing: boolean;
   streams: StreamChoice;
@@ -18,8 +18,8 @@ export interface Figures {
 }
 
 const explanations: Record<StreamChoice, string> = {
-  both: 'Both streams: the drape of the body’s pose, and the folds that nearby vertices settle among themselves.',
-  skeleton: 'Only what the skeleton’s pose says: the coarse drape, without the folds of the mesh stream.',
+  both: 'Both streams: the drape that follows from the body’s pose, and the folds that nearby vertices agree on.',
+  skeleton: 'The skeleton stream alone: the coarse drape, without the folds of the mesh stream.',
   none: 'No network: the T-shirt bends with the bones, as game characters’ clothes usually do.',
 };
 
@@ -28,8 +28,9 @@ export function element<T extends HTMLElement>(id: string): T {
   return document.getElementById(id) as T;
 }
 
-/** The controls of the page; `wishes` is what they say now. */
+/** The controls of the page. */
 export class Panel {
+  /** What the controls say now. */
   readonly wishes: Wishes = { playing: true, streams: 'both', clip: '', wireframe: false };
   /** Called when the person drags the time. */
   onScrub: (seconds: number) => void = () => {};
@@ -55,7 +56,7 @@ export class Panel {
     element('panel').hidden = false;
   }
 
-  /** Shows the figures of the frame just drawn. */
+  /** Shows figures of what was just drawn. */
   show({ milliseconds, time, duration }: Figures): void {
     this.#time.max = String(duration);
     this.#time.value = String(time);

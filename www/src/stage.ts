@@ -32,10 +32,22 @@ export class Stage {
     this.renderer.shadowMap.type = PCFShadowMap;
     this.camera.position.set(1.1, 1.35, 4.6);
     this.controls = new OrbitControls(this.camera, canvas);
-    Object.assign(this.controls, { enableDamping: true, enablePan: false, minDistance: 1.2, maxDistance: 9, maxPolarAngle: 1.65 });
+    Object.assign(this.controls, {
+      enableDamping: true,
+      enablePan: false,
+      minDistance: 1.2,
+      maxDistance: 9,
+      maxPolarAngle: 1.65,
+    });
     // The controls move the camera in their own event handlers too, not only in update().
     this.controls.addEventListener('change', () => (this.#changed = true));
-    this.scene.add(new HemisphereLight('#fdfaf4', '#8d8478', 1.5), this.#sun, this.#sun.target, createFill(), createGround());
+    this.scene.add(
+      new HemisphereLight('#fdfaf4', '#8d8478', 1.5),
+      this.#sun,
+      this.#sun.target,
+      createFill(),
+      createGround(),
+    );
     new ResizeObserver(() => this.#resize(canvas)).observe(canvas);
     this.#resize(canvas);
   }
@@ -51,7 +63,7 @@ export class Stage {
     this.#sun.position.set(to.x + 1.6, 4.2, to.z + 2.4);
   }
 
-  /** Moves the camera as the person at the controls does; true when the picture is another since the last call. */
+  /** Moves the camera as the person at the controls wants; true if the view has changed since the last call. */
   look(): boolean {
     this.controls.update();
     const changed = this.#changed;
@@ -59,7 +71,7 @@ export class Stage {
     return changed;
   }
 
-  /** Draws one frame. */
+  /** Draws the scene. */
   render(): void {
     this.renderer.render(this.scene, this.camera);
   }
@@ -69,7 +81,7 @@ export class Stage {
     this.renderer.setSize(width, height, false);
     this.#changed = true;
     this.camera.aspect = width / height;
-    // On a wide page the panel covers the right: the character stands left of it. On a narrow one it stands above.
+    // The panel covers the right of a wide page and the bottom of a narrow one: the character moves out of its way.
     const wide = width > 760;
     this.camera.fov = wide ? 30 : 52;
     this.camera.setViewOffset(width, height, wide ? 0.06 * width : 0, wide ? 0 : 0.2 * height, width, height);

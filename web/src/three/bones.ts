@@ -1,14 +1,19 @@
 import { PropertyBinding, Skeleton, type Object3D, type SkinnedMesh } from 'three';
 import { CtsnError } from '../error.js';
 
-/** Where a cloth finds its bones: a skeleton, a skinned mesh, or the object above a whole character (several skins). */
+/**
+ * Where a cloth finds its bones: a skeleton, a skinned mesh, or the object above a character of several skinned meshes.
+ */
 export type Character = Object3D | Skeleton;
 
-/** The objects that carry the model's joints, in the model's order; found by name, as glTF files and three's loader spell it. */
+/**
+ * The objects that carry the model's joints, in the model's order. They are found by name, spelled as in the glTF file
+ * or as three's loader cleans it.
+ */
 export function findBones(character: Character, joints: readonly string[]): Object3D[] {
   const named = new Map<string, Object3D>();
   for (const object of candidates(character)) {
-    // three's GLTFLoader keeps the name of the file in userData and cleans the other.
+    // three's GLTFLoader keeps the file's spelling in userData and cleans `name`.
     for (const name of [object.userData['name'] as unknown, object.name]) {
       if (typeof name === 'string' && !named.has(name)) named.set(name, object);
     }
@@ -26,11 +31,11 @@ function candidates(character: Character): Object3D[] {
   if (skeleton) return skeleton.bones;
   const found: Object3D[] = [];
   character.traverse((object) => found.push(object));
-  // A mesh may bear the name of a joint; the bone is meant.
+  // Bones first: a mesh may have the name of a joint.
   return found.sort((a, b) => Number('isBone' in b) - Number('isBone' in a));
 }
 
-/** Those of the bones that stand below none of the others: updating them updates all. */
+/** The bones that have none of the others above them: updating these updates all. */
 export function topmost(bones: readonly Object3D[]): Object3D[] {
   const all = new Set(bones);
   return bones.filter((bone) => {
@@ -39,7 +44,7 @@ export function topmost(bones: readonly Object3D[]): Object3D[] {
   });
 }
 
-/** Makes the world matrices of these objects, of all above and all below them true. */
+/** Brings the world matrices of these objects, of all above and of all below them up to date. */
 export function refresh(tops: readonly Object3D[]): void {
   for (let i = 0; i < tops.length; i++) {
     const top = tops[i]!;
@@ -49,9 +54,9 @@ export function refresh(tops: readonly Object3D[]): void {
 }
 
 /**
- * Makes the world matrices of an object and of all above it true. Not `updateWorldMatrix(true, …)`: since three r187 that
- * skips an object whose own matrix did not change, although its parent's did, and it takes the mark `matrixWorldNeedsUpdate`
- * away, by which the renderer would have updated the object's other children.
+ * Brings the world matrices of an object and of all above it up to date. `updateWorldMatrix(true, …)` will not do, for
+ * two reasons. Since three r187 it skips an object whose own matrix did not change, even if its parent's did. And it
+ * clears `matrixWorldNeedsUpdate`, without which the renderer does not update the object's other children.
  */
 export function refreshAbove(object: Object3D): void {
   if (object.parent) refreshAbove(object.parent);

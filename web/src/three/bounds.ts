@@ -7,14 +7,18 @@ export function boundPositions(positions: Float32Array, geometry: BufferGeometry
 }
 
 /**
- * Sets the bounds of a geometry whose positions only the GPU knows: the box of the joints in `pose` [16·J], widened by `reach`.
+ * Sets the bounds of a geometry whose positions only the GPU knows: the box of the joints in `pose` [16·J], widened by
+ * `reach` metres.
  */
 export function boundPose(pose: Float32Array, reach: number, geometry: BufferGeometry): void {
   enclose(pose, 12, 16, geometry.boundingBox!);
   geometry.boundingBox!.expandByScalar(reach).getBoundingSphere(geometry.boundingSphere!);
 }
 
-/** How far positions [3·n] stand from the nearest joint of `pose` [16·J], at most; half as much again for other poses. */
+/**
+ * How far the cloth reaches from the joints, metres: the greatest distance of positions [3·n] from the nearest joint of
+ * `pose` [16·J], and half as much again, since other poses may carry it further.
+ */
 export function reachOf(positions: Float32Array, pose: Float32Array): number {
   let farthest = 0;
   for (let at = 0; at < positions.length; at += 3) {

@@ -5,29 +5,33 @@ import type { ClothModel, Frame, PredictOptions } from '../model.js';
 import { findBones, refresh, refreshAbove, topmost, type Character } from './bones.js';
 import { boundPose, reachOf } from './bounds.js';
 import { splitPlacement } from './placement.js';
-import { createGeometry, drawFrame } from './surface.js';
+import { createGeometry, showPrediction } from './surface.js';
 import { ZeroCopy } from './zero-copy.js';
 
-/** Predictions on the GPU on their way back, at most: with one, every second frame would pass without a new one. */
+/**
+ * Predictions on their way back from the GPU, at most. With one, every second animation frame would show nothing new.
+ */
 const IN_FLIGHT = 2;
 
 /** How a cloth is to be predicted. */
 export type ClothOptions = Pick<PredictOptions, 'streams'>;
 
 /**
- * A garment in a three.js scene. Add it anywhere in the scene and call `update()` once a frame, after the animation:
- * it reads the character's bones and follows them at whatever place and scale the character has.
+ * A garment in a three.js scene. Add it anywhere in the scene and call `update()` once per animation frame, after the
+ * animation: it reads the character's bones and follows them at whatever place and scale the character has.
  *
- * Where the model computes on the GPU and `renderer` is a WebGPURenderer on the same device, that draws from the very buffers
- * of the prediction. With any other renderer the prediction is read back and shows a frame late.
+ * Where the model computes on the GPU and `renderer` is a WebGPURenderer on the same device, the renderer draws from
+ * the buffers that the prediction is written to. With any other renderer the prediction is read back and shows a frame
+ * late.
  *
- * Several cloths may share one model. `dispose()` frees the geometry; model and material belong to who made them.
+ * Several cloths may share one model. `dispose()` frees the geometry; whoever made the model and the material frees
+ * those.
  */
 export class Cloth<M extends Material | Material[] = Material> extends Mesh<BufferGeometry, M> {
   override readonly type: string = 'Cloth';
   /** The network that moves this cloth. */
   readonly model: ClothModel;
-  /** The objects whose world matrices are the pose, in the order of `model.joints`. */
+  /** The objects whose world matrices make the pose, in the order of `model.joints`. */
   readonly bones: readonly Object3D[];
 
   readonly #character: Character;
@@ -37,12 +41,18 @@ export class Cloth<M extends Material | Material[] = Material> extends Mesh<Buff
   readonly #pose: Float32Array;
   readonly #placement = /* @__PURE__ */ new Matrix4();
   readonly #zeroCopy: ZeroCopy;
-  readonly #late = new Set<Promise<void>>();
+  /** How the last update wants the cloth predicted. */
+  #options: ClothOptions | undefined;
+  /** Answers on their way from the GPU, and what remains to be done when they come. */
+  #inFlight = 0;
+  readonly #late = new Set<Promise<unknown>>();
+  /** Whether the last update found too many on their way. */
+  #skipped = false;
   /** Predictions asked for, and the last of them that is shown. */
   #asked = 0;
   #shown = 0;
-  #skipped = false;
   #confidence = 1;
+  /** What was refused between two updates. */
   #failure: unknown;
   /** Distance of the cloth from the joints, metres; measured when only the GPU knows the positions. */
   #reach: number | undefined;
@@ -57,9 +67,9 @@ export class Cloth<M extends Material | Material[] = Material> extends Mesh<Buff
     this.#rootInverseBind = model.inverseBind.slice(12 * model.rootIndex, 12 * model.rootIndex + 12);
     this.#pose = new Float32Array(16 * model.joints.length);
     this.#zeroCopy = new ZeroCopy(model, this.geometry, renderer);
-    // The matrix follows from the bones; position, rotation and scale of this object have no say.
+    // The matrix follows from the bones; this object's own position, rotation and scale are ignored.
     this.matrixAutoUpdate = false;
-    // The first frame is there at once on any backend.
+    // The first prediction is there at once, wherever later ones are computed.
     if (this.#read()) this.#show(model.predictCloth(this.#pose, { backend: 'cpu' }));
     this.#place();
   }
@@ -74,19 +84,27 @@ export class Cloth<M extends Material | Material[] = Material> extends Mesh<Buff
     return this.model.fallback;
   }
 
-  /** Whether the renderer draws from the buffers of the prediction. The attributes' arrays are stale then: no ray hits the cloth. */
+  /**
+   * Whether the renderer draws from the prediction's buffers. The attributes' arrays are stale then: no ray hits the
+   * cloth.
+   */
   get zeroCopy(): boolean {
     return this.#zeroCopy.drawn;
   }
 
-  /** `Frame.confidence` of the pose that is shown: below 1 the pose is unlike those of the training. */
+  /** `Frame.confidence` of the prediction that is shown: below 1 its pose is unlike those of the training. */
   get confidence(): number {
     return this.#confidence;
   }
 
-  /** Predicts the cloth for the bones as they stand now. On the CPU it allocates nothing. */
+  /**
+   * Predicts the cloth for the bones as they stand now. On the CPU it allocates nothing. Throws what is refused, also
+   * what the GPU refused since the last call.
+   */
   update(options?: ClothOptions): this {
-    if (this.#read()) this.#predict(options);
+    this.#complain();
+    this.#options = options;
+    if (this.#read()) this.#predict();
     this.#place();
     return this;
   }
@@ -103,61 +121,66 @@ export class Cloth<M extends Material | Material[] = Material> extends Mesh<Buff
     return splitPlacement(this.bones, this.model.rootIndex, this.#rootInverseBind, this.#pose, this.#placement);
   }
 
-  #predict(options: ClothOptions | undefined): void {
-    const { model } = this;
+  /** Predicts the cloth for the bones last read. */
+  #predict(): void {
+    this.#skipped = false;
     const buffers = this.#zeroCopy.ready();
-    if (buffers) return this.#draw(buffers, options);
-    this.#complain();
-    // Until there are buffers to draw from, the CPU is never a frame late.
-    if (this.#zeroCopy.shares()) return this.#show(model.predictCloth(this.#pose, { ...options, backend: 'cpu' }));
-    this.#skipped = this.#late.size >= IN_FLIGHT;
-    if (this.#skipped) return;
-    const answer = model.predictCloth(this.#pose, options);
+    if (buffers) return this.#draw(buffers);
+    // Until there are buffers to draw from, the CPU predicts: it is never late.
+    if (this.#zeroCopy.shares()) {
+      return this.#show(this.model.predictCloth(this.#pose, { ...this.#options, backend: 'cpu' }));
+    }
+    if (this.#inFlight >= IN_FLIGHT) {
+      this.#skipped = true;
+      return;
+    }
+    const answer = this.model.predictCloth(this.#pose, this.#options);
     if ('output' in answer) this.#show(answer);
-    else this.#await(answer, options);
+    else this.#await(answer);
   }
 
-  #draw(buffers: ClothBuffers, options: ClothOptions | undefined): void {
+  #draw(buffers: ClothBuffers): void {
     const { model } = this;
     this.#reach ??= reachOf(model.predictCloth(this.#pose, { backend: 'cpu' }).positions, this.#pose);
-    const answer = model.predictCloth(this.#pose, { ...options, output: 'gpu', buffers });
+    const answer = model.predictCloth(this.#pose, { ...this.#options, output: 'gpu', buffers });
     if (answer.output === 'gpu') {
+      this.#shown = ++this.#asked;
       boundPose(this.#pose, this.#reach, this.geometry);
       this.#zeroCopy.draw(answer);
       this.#confidence = answer.confidence;
     } else {
+      // The buffers are gone with the GPU: the renderer draws from the arrays again.
       this.#zeroCopy.ready();
       this.#show(answer);
     }
   }
 
-  #await(answer: Promise<Frame>, options: ClothOptions | undefined): void {
+  /** Shows a late answer when it comes, unless a later one is shown, and then predicts what was skipped meanwhile. */
+  #await(answer: Promise<Frame>): void {
     const turn = ++this.#asked;
-    const late = answer
-      .then(
-        (frame) => turn > this.#shown && this.#show(frame, turn),
-        // The next update tells, unless the model is gone on purpose.
-        (error: unknown) => (this.#failure = this.model.disposed ? undefined : error),
-      )
-      .then(() => {
-        this.#late.delete(late);
-        if (this.#skipped && !this.model.disposed) this.#predict(options);
-      });
+    this.#inFlight++;
+    const late: Promise<unknown> = answer
+      .finally(() => this.#inFlight--)
+      .then((frame) => turn > this.#shown && this.#show(frame, turn))
+      .finally(() => this.#skipped && this.#predict())
+      // Nobody called: the next update tells.
+      .catch((error: unknown) => (this.#failure = error))
+      .finally(() => this.#late.delete(late));
     this.#late.add(late);
   }
 
-  /** Throws what a late answer was refused for, once. */
+  /** Throws what was refused since the last update, once. */
   #complain(): void {
     const failure = this.#failure;
     this.#failure = undefined;
     if (failure) throw failure;
   }
 
-  /** Shows a frame; earlier ones that are still on their way are void. */
+  /** Shows a prediction; earlier ones that are still on their way are void. */
   #show(frame: Frame, turn = ++this.#asked): void {
     this.#shown = turn;
     this.#confidence = frame.confidence;
-    drawFrame(this.geometry, frame, this.model.surface?.vertex);
+    showPrediction(this.geometry, frame, this.model.surface?.vertex);
   }
 
   /** Makes `matrixWorld` the placement, whatever stands above this object. */

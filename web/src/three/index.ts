@@ -1,4 +1,4 @@
 export { Cloth, type ClothOptions } from './cloth.js';
-export { deviceOf } from './adopt.js';
+export { deviceOf } from './renderer.js';
 export { ClothLoader } from './loader.js';
 export type { Character } from './bones.js';

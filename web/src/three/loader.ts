@@ -5,7 +5,7 @@ import { loadModel } from '../load.js';
 import type { ClothModel } from '../model.js';
 import type { WasmSource } from '../raw.js';
 
-/** `loadModel` as a three.js loader: path, loading manager, request headers and credentials apply. */
+/** `loadModel` as a three.js loader, with its path, loading manager, request headers and credentials. */
 export class ClothLoader extends Loader<ClothModel> {
   #wasm: WasmSource | undefined;
   #backend: BackendChoice = 'cpu';
@@ -31,9 +31,14 @@ export class ClothLoader extends Loader<ClothModel> {
     onError?: (error: unknown) => void,
   ): void {
     const address = this.manager.resolveURL(this.path + url);
-    const request: RequestInit = { headers: this.requestHeader, credentials: this.withCredentials ? 'include' : 'same-origin' };
-    const [backend, device, wasm] = [this.#backend, this.#device, this.#wasm];
-    const options = { backend, device, request, wasm, onProgress: (progress: Progress) => onProgress?.(toEvent(progress)) };
+    const credentials = this.withCredentials ? 'include' : 'same-origin';
+    const options = {
+      backend: this.#backend,
+      device: this.#device,
+      wasm: this.#wasm,
+      request: { headers: this.requestHeader, credentials } satisfies RequestInit,
+      onProgress: (progress: Progress) => onProgress?.(toEvent(progress)),
+    };
     this.manager.itemStart(address);
     loadModel(address, options).then(
       (model) => {

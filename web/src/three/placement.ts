@@ -1,14 +1,14 @@
 import type { Matrix4, Object3D } from 'three';
 
 /**
- * Splits a posed character into the pose the network knows (metres, upright size, hip at the origin) and the
- * similarity `placement` that brings its answer back into the scene.
+ * Splits a posed character into the pose that the network is given (size as in training, hip at the origin) and the
+ * similarity `placement` that carries the network's answer back into the scene.
  *
- * The scale is that of A_root = G_root · inverse_bind_root, which is 1 where the character has the size it was trained at.
- * The origin moves to the hip because the network is indifferent to it and float32 is not, far from the scene's origin.
+ * The scale is that of A_root = G_root · inverse_bind_root, which is 1 for a character as large as in training. The hip
+ * is moved to the origin because float32 has few digits left far from it; to the network the place makes no difference.
  * A mirrored character (negative determinant) is mirrored back in x.
  *
- * inverseBind: the root's row-major 3×4. pose [16·J] is written. Answers false for a character scaled to nothing.
+ * inverseBind: the root's row-major 3×4. Writes pose [16·J]. Answers false for a character scaled to nothing.
  */
 export function splitPlacement(
   bones: readonly Object3D[],
@@ -43,6 +43,8 @@ export function splitPlacement(
 /** Of the 3×3 part of a row-major 3×4 matrix. */
 function determinant(m: ArrayLike<number>): number {
   return (
-    m[0]! * (m[5]! * m[10]! - m[6]! * m[9]!) - m[1]! * (m[4]! * m[10]! - m[6]! * m[8]!) + m[2]! * (m[4]! * m[9]! - m[5]! * m[8]!)
+    m[0]! * (m[5]! * m[10]! - m[6]! * m[9]!) -
+    m[1]! * (m[4]! * m[10]! - m[6]! * m[8]!) +
+    m[2]! * (m[4]! * m[9]! - m[5]! * m[8]!)
   );
 }

@@ -2,7 +2,7 @@ import { Box3, BufferAttribute, BufferGeometry, DynamicDrawUsage, Sphere } from 
 import type { ClothModel, Frame } from '../model.js';
 import { boundPositions } from './bounds.js';
 
-/** The drawn surface of a model, empty until `drawFrame` fills it; its bounds are `drawFrame`'s work too. */
+/** The drawn surface of a model. Its positions, normals and bounds are empty until `showPrediction` fills them. */
 export function createGeometry({ surface, triangles, vertexCount }: ClothModel): BufferGeometry {
   const count = surface ? surface.vertex.length : vertexCount;
   const geometry = new BufferGeometry();
@@ -15,8 +15,8 @@ export function createGeometry({ surface, triangles, vertexCount }: ClothModel):
   return geometry;
 }
 
-/** Copies a predicted frame to the geometry, seams split by `vertex` (drawn -> cloth), and sets its bounds. */
-export function drawFrame(geometry: BufferGeometry, { positions, normals }: Frame, vertex?: Uint32Array): void {
+/** Copies a prediction to the geometry, split at seams by `vertex` (drawn -> cloth), and sets the bounds. */
+export function showPrediction(geometry: BufferGeometry, { positions, normals }: Frame, vertex?: Uint32Array): void {
   const position = geometry.getAttribute('position') as BufferAttribute;
   const normal = geometry.getAttribute('normal') as BufferAttribute;
   gather(positions, vertex, position.array as Float32Array);

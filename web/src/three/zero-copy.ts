@@ -1,11 +1,11 @@
 import type { BufferAttribute, BufferGeometry } from 'three';
 import type { ClothBuffers } from '../buffers.js';
 import type { ClothModel } from '../model.js';
-import { deviceOf, lend, takeBack } from './adopt.js';
+import { deviceOf, drawFromArray, drawFromBuffer } from './renderer.js';
 
 /**
- * The buffers of one cloth on the GPU, drawn by a renderer that shares the model's device. They are asked for when both are
- * there, and given up when either is gone.
+ * The buffers of one cloth on the GPU, from which a renderer draws. They are asked for once the model predicts on the
+ * renderer's device, and given up when it no longer does.
  */
 export class ZeroCopy {
   readonly #model: ClothModel;
@@ -22,20 +22,24 @@ export class ZeroCopy {
     this.#renderer = renderer;
   }
 
-  /** Whether the renderer draws from them. */
+  /** Whether the renderer draws from the buffers. */
   get drawn(): boolean {
     return this.#drawn;
   }
 
-  /** Settles when none are on their way. */
+  /** Settles when the buffers that were asked for are there, or are known not to come. */
   get coming(): Promise<void> | undefined {
     return this.#coming;
   }
 
-  /** The buffers to predict into, if there are any. */
+  /**
+   * The buffers to predict into, if there are any. Lets go of buffers that are gone, and asks for ones that are wanted.
+   */
   ready(): ClothBuffers | undefined {
     if (this.#buffers?.disposed) this.#leave();
-    if (!this.#buffers && !this.#coming && this.shares()) this.#coming = this.#ask().finally(() => (this.#coming = undefined));
+    if (!this.#buffers && !this.#coming && this.shares()) {
+      this.#coming = this.#ask().finally(() => (this.#coming = undefined));
+    }
     return this.#buffers;
   }
 
@@ -49,8 +53,8 @@ export class ZeroCopy {
   draw({ drawnPositions, drawnNormals }: ClothBuffers): void {
     if (this.#drawn) return;
     this.#drawn = true;
-    lend(this.#renderer!, this.#attribute('position'), drawnPositions);
-    lend(this.#renderer!, this.#attribute('normal'), drawnNormals);
+    drawFromBuffer(this.#renderer!, this.#attribute('position'), drawnPositions);
+    drawFromBuffer(this.#renderer!, this.#attribute('normal'), drawnNormals);
   }
 
   dispose(): void {
@@ -59,7 +63,7 @@ export class ZeroCopy {
   }
 
   async #ask(): Promise<void> {
-    // What cannot be had is not needed: the cloth is drawn from arrays, and the model tells why.
+    // Without buffers the cloth is drawn from arrays, and the model tells why.
     const buffers = await this.#model.createBuffers().catch(() => undefined);
     if (this.#disposed) buffers?.dispose();
     else this.#buffers = buffers;
@@ -69,8 +73,8 @@ export class ZeroCopy {
     this.#buffers = undefined;
     if (!this.#drawn) return;
     this.#drawn = false;
-    takeBack(this.#renderer!, this.#attribute('position'));
-    takeBack(this.#renderer!, this.#attribute('normal'));
+    drawFromArray(this.#renderer!, this.#attribute('position'));
+    drawFromArray(this.#renderer!, this.#attribute('normal'));
   }
 
   #attribute(name: string): BufferAttribute {

@@ -1,7 +1,7 @@
 /**
- * The one file that reaches into three.js: where WebGPURenderer keeps the buffer of an attribute. three makes one only where
- * there is none, and asks its record again for every draw, so that another buffer may stand there. Tested at both ends of the
- * peer range.
+ * The one file that reaches into three.js: where WebGPURenderer keeps the GPU buffer of an attribute. It makes a buffer
+ * only where there is none, and looks its record of the attribute up again at every draw, so that another buffer may be
+ * put there. Tested at both ends of the peer range.
  */
 import { DynamicDrawUsage, StaticDrawUsage, type BufferAttribute } from 'three';
 
@@ -19,27 +19,31 @@ function backendOf(renderer: object | undefined): WebGPUBackend | undefined {
   return backend?.isWebGPUBackend ? (backend as WebGPUBackend) : undefined;
 }
 
-/** The GPU device of a WebGPURenderer, after its `init()`; nothing of any other renderer, or where it fell back to WebGL. */
+/**
+ * The GPU device of a WebGPURenderer, after its `init()`; nothing of any other renderer, or where it fell back to
+ * WebGL.
+ */
 export function deviceOf(renderer: object | undefined): GPUDevice | undefined {
   return backendOf(renderer)?.device;
 }
 
-/** Lets the renderer draw an attribute from `buffer`. What stands in the attribute's array is no longer uploaded. */
-export function lend(renderer: object, attribute: BufferAttribute, buffer: GPUBuffer): void {
+/** Lets the renderer draw an attribute from `buffer`. The attribute's array is no longer uploaded. */
+export function drawFromBuffer(renderer: object, attribute: BufferAttribute, buffer: GPUBuffer): void {
   const record = backendOf(renderer)?.get(attribute);
   if (!record || record.buffer === buffer) return;
   record.buffer?.destroy();
   record.buffer = buffer;
-  // A dynamic attribute is written at every draw, one of a new version at the next.
+  // three uploads a dynamic attribute at every draw, and any other when its version has grown.
   attribute.setUsage(StaticDrawUsage);
   attribute.version = 0;
 }
 
-/** Lets the renderer draw an attribute from its array again, from a buffer of its own. */
-export function takeBack(renderer: object, attribute: BufferAttribute): void {
+/** Lets the renderer draw an attribute from its array again, by way of a buffer of the renderer's own. */
+export function drawFromArray(renderer: object, attribute: BufferAttribute): void {
   const backend = backendOf(renderer);
   if (!backend?.device) return;
   const usage = GPUBufferUsage.VERTEX | GPUBufferUsage.COPY_DST | GPUBufferUsage.COPY_SRC;
-  backend.get(attribute).buffer = backend.device.createBuffer({ label: attribute.name, size: attribute.array.byteLength, usage });
+  const size = attribute.array.byteLength;
+  backend.get(attribute).buffer = backend.device.createBuffer({ label: attribute.name, size, usage });
   attribute.setUsage(DynamicDrawUsage);
 }

@@ -1,0 +1,113 @@
+// A GPU in Node: what stands for the module's GPU classes and for the browser's devices. It predicts on the CPU; its
+// answers come back when, and as, a test says.
+import type { Predictor, Streams } from '../dist/raw.js';
+
+/** What a test decides, and what it may look at. */
+export const gpu = {
+  /** How often the next adoptions of a device are refused. */
+  refusals: 0,
+  /** Whether answers wait in `answers` for the test, or come by themselves. */
+  held: false,
+  answers: [] as { come: () => void; fail: (code: string) => void }[],
+  /** The streams of every prediction submitted. */
+  submitted: [] as Streams[],
+  /** What happens while a prediction is submitted; the code of its failure, if it is to fail. */
+  submitting: (): string | undefined => undefined,
+};
+
+/** An error as the module throws it: its name is the code. */
+function coreError(code: string): Error {
+  return Object.assign(new Error(`${code}, says the fake GPU`), { name: code });
+}
+
+/** Stands for the class of this name in raw.ts, as the next one does. */
+export class Gpu {
+  static adopt(): Promise<Gpu> {
+    return gpu.refusals-- > 0 ? Promise.reject(coreError('refused')) : Promise.resolve(new Gpu());
+  }
+}
+
+export class GpuModel {
+  static load(_: Gpu, cpu: Predictor): Promise<GpuModel> {
+    return Promise.resolve(new GpuModel(3 * cpu.vertex_count()));
+  }
+
+  private constructor(private readonly numbers: number) {}
+
+  predictor(): Promise<GpuPredictor> {
+    return Promise.resolve(new GpuPredictor(this.numbers));
+  }
+
+  free(): void {}
+}
+
+class GpuPredictor {
+  constructor(private readonly numbers: number) {}
+
+  predict(cpu: Predictor, streams: Streams): boolean {
+    gpu.submitted.push(streams);
+    const code = gpu.submitting();
+    if (!code) return cpu.predict(streams);
+    cpu.take_failure = () => coreError(code);
+    return false;
+  }
+
+  read(): Promise<[Float32Array, Float32Array]> {
+    const answer = [new Float32Array(this.numbers), new Float32Array(this.numbers)] as [Float32Array, Float32Array];
+    if (!gpu.held) return Promise.resolve(answer);
+    return new Promise((resolve, reject) => {
+      gpu.answers.push({ come: () => resolve(answer), fail: (code) => reject(coreError(code)) });
+    });
+  }
+
+  confidence(): number {
+    return 1;
+  }
+
+  buffers(): object[] {
+    return [{}, {}, {}, {}];
+  }
+
+  free(): void {}
+}
+
+/** A `GPUDevice` as far as this package looks at one. */
+export class FakeDevice extends EventTarget {
+  readonly features = new Set<string>();
+  readonly limits = {};
+  readonly adapterInfo: object;
+  readonly lost: Promise<{ reason: string; message: string }>;
+  lose!: () => void;
+
+  constructor(readonly name: string) {
+    super();
+    this.adapterInfo = { description: name };
+    this.lost = new Promise((resolve) => (this.lose = () => resolve({ reason: 'destroyed', message: '' })));
+  }
+
+  /** Where the package takes a device. */
+  get lent(): GPUDevice {
+    return this as unknown as GPUDevice;
+  }
+
+  /** An error that no command of ours asked about. */
+  err(message: string): void {
+    this.dispatchEvent(Object.assign(new Event('uncapturederror'), { error: { message } }));
+  }
+}
+
+/** The browser's `navigator`, whose adapter hands out new devices: `devices`, in their order. */
+export class FakeNavigator {
+  readonly devices: FakeDevice[] = [];
+
+  // On the prototype, as in a browser, where an own property hides it for a moment.
+  get gpu(): object {
+    const requestDevice = () => {
+      const device = new FakeDevice(`device ${this.devices.length}`);
+      this.devices.push(device);
+      return Promise.resolve(device);
+    };
+    const adapter = { limits: {}, info: {}, requestDevice };
+    return { wgslLanguageFeatures: new Set(), requestAdapter: () => Promise.resolve(adapter) };
+  }
+}

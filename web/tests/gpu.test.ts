@@ -1,0 +1,210 @@
+// What the package does when a GPU refuses, fails or is lost, with a fake one. tests/browser has a real one.
+import { getEventListeners } from 'node:events';
+import { MeshBasicMaterial } from 'three';
+import { afterEach, beforeEach, expect, test, vi } from 'vitest';
+import { loadModel, type ClothModel, type Frame } from 'ctsn';
+import { Cloth } from 'ctsn/three';
+import { startModule } from '../dist/raw.js';
+import { difference } from '../../tests/browser/safetensors.js';
+import { collectGarbage } from './allocation.js';
+import { characterOf } from './character.js';
+import { FakeDevice, FakeNavigator, gpu } from './fake-gpu.js';
+import { bytesOf, loadConfident, readGolden } from './golden.js';
+
+vi.mock('../dist/raw.js', async (original) => {
+  const { Gpu, GpuModel } = await import('./fake-gpu.js');
+  return { ...(await original<object>()), Gpu, GpuModel };
+});
+
+const tiny = readGolden('tiny');
+let browser: FakeNavigator;
+
+beforeEach(() => {
+  Object.assign(gpu, { refusals: 0, held: false, answers: [], submitted: [], submitting: () => undefined });
+  vi.stubGlobal('navigator', (browser = new FakeNavigator()));
+});
+afterEach(async () => {
+  // The page's own device is gone with its test.
+  for (const device of browser.devices) device.lose();
+  await turn();
+  vi.unstubAllGlobals();
+});
+
+/** Waits until everything that is ready to happen has happened. */
+const turn = () => new Promise((resolve) => setTimeout(resolve));
+
+const load = (device?: FakeDevice): Promise<ClothModel> =>
+  loadModel(bytesOf('tiny'), { backend: 'webgpu', device: device?.lent });
+
+/** A cloth with two predictions on their way back and a third, of other streams, skipped. */
+async function dressLate(): Promise<{ model: ClothModel; cloth: Cloth }> {
+  const model = await load(new FakeDevice('lent'));
+  const cloth = new Cloth(model, characterOf(model.joints, tiny.poses[0]!), new MeshBasicMaterial());
+  gpu.held = true;
+  cloth.update().update().update({ streams: 'none' });
+  expect(gpu.answers).toHaveLength(2);
+  return { model, cloth };
+}
+
+test('what a late answer is refused for, the next update throws, once', async () => {
+  const { model, cloth } = await dressLate();
+  gpu.answers[0]!.fail('not_finite');
+  await turn();
+  // The skipped one is asked for all the same, as it was wanted.
+  expect(gpu.answers).toHaveLength(3);
+  expect(gpu.submitted.at(-1)).toBe(2);
+  gpu.answers.forEach(({ come }) => come());
+  await cloth.settled();
+  expect(() => cloth.update()).toThrow(expect.objectContaining({ code: 'not_finite' }) as Error);
+  cloth.update();
+  expect(model.backend).toBe('webgpu');
+  model.dispose();
+});
+
+test('what a skipped prediction is refused for, the next update throws', async () => {
+  const { model, cloth } = await dressLate();
+  const [bone] = cloth.bones;
+  bone!.matrix.elements[12] = NaN;
+  cloth.update();
+  bone!.matrix.elements[12] = 0;
+  gpu.answers[0]!.come();
+  await turn();
+  gpu.answers[1]!.come();
+  await cloth.settled();
+  expect(() => cloth.update()).toThrow(expect.objectContaining({ code: 'not_finite' }) as Error);
+  model.dispose();
+});
+
+test('a device whose adoption was refused may be tried again', async () => {
+  gpu.refusals = 1;
+  const device = new FakeDevice('lent');
+  const model = await load(device);
+  expect(model.backend).toBe('cpu');
+  expect(model.fallback).toContain('refused');
+  await model.setBackend('webgpu', device.lent);
+  expect(model.backend).toBe('webgpu');
+  expect(model.fallback).toBeUndefined();
+  model.dispose();
+});
+
+test('measuring for "auto" leaves a prediction alone that a caller holds', async () => {
+  const { model, wild } = await loadConfident();
+  const measured = (model as ClothModel).setBackend('auto', new FakeDevice('lent').lent);
+  const held = model.predictCloth(wild, { backend: 'cpu' });
+  const [positions, normals] = [held.positions.slice(), held.normals.slice()];
+  expect(held.confidence).toBe(0);
+  await measured;
+  expect(model.measured!.cpu).toBeGreaterThan(0);
+  expect([difference(held.positions, positions), difference(held.normals, normals)]).toEqual([0, 0]);
+  expect(held.confidence).toBe(0);
+  model.dispose();
+});
+
+test('the CPU answers for a GPU that failed, and leaves a prediction alone that a caller holds', async () => {
+  const { model, poses, positions: expected, tolerance, wild } = await loadConfident();
+  await (model as ClothModel).setBackend('webgpu', new FakeDevice('lent').lent);
+  gpu.held = true;
+  const answer = (model as ClothModel).predictCloth(poses[0]!) as Promise<Frame>;
+  const held = model.predictCloth(wild, { backend: 'cpu' });
+  const [positions, normals] = [held.positions.slice(), held.normals.slice()];
+  gpu.answers[0]!.fail('lost');
+  const late = await answer;
+  expect(difference(late.positions, expected[0]!)).toBeLessThanOrEqual(tolerance);
+  expect(late.confidence).toBe(1);
+  expect(model.backend).toBe('cpu');
+  expect([difference(held.positions, positions), difference(held.normals, normals)]).toEqual([0, 0]);
+  expect(held.confidence).toBe(0);
+  model.dispose();
+});
+
+test('the CPU answers for the right pose, although the memory grew while the prediction was submitted', async () => {
+  const memory = await startModule();
+  const model = await load(new FakeDevice('lent'));
+  gpu.held = true;
+  gpu.submitting = () => void memory.grow(1);
+  const answer = model.predictCloth(tiny.poses[0]!) as Promise<Frame>;
+  model.predictCloth(tiny.poses[1]!, { backend: 'cpu' });
+  gpu.answers[0]!.fail('lost');
+  expect(difference((await answer).positions, tiny.positions[0]!)).toBeLessThanOrEqual(tiny.tolerance);
+  model.dispose();
+});
+
+test('the CPU answers at once where the GPU takes no prediction, whatever a listener predicts meanwhile', async () => {
+  const memory = await startModule();
+  const model = await load(new FakeDevice('lent'));
+  model.addEventListener('backend', () => void model.predictCloth(tiny.poses[1]!));
+  gpu.submitting = () => {
+    memory.grow(1);
+    return 'lost';
+  };
+  const answer = model.predictCloth(tiny.poses[0]!) as Frame;
+  expect(model.backend).toBe('cpu');
+  expect(difference(answer.positions, tiny.positions[0]!)).toBeLessThanOrEqual(tiny.tolerance);
+  model.dispose();
+});
+
+test('nothing of a model that was disposed of is left on the device that all models share', async () => {
+  const first = await load();
+  const [device] = browser.devices as [FakeDevice];
+  const listeners = () => getEventListeners(device, 'uncapturederror').length;
+  expect(listeners()).toBe(1);
+  const round = async () => {
+    const model = await load();
+    await model.setBackend('webgpu');
+    expect(listeners()).toBe(2);
+    model.dispose();
+    expect(listeners()).toBe(1);
+    return new WeakRef(model);
+  };
+  const gone = [await round(), await round(), await round()];
+  expect(browser.devices).toHaveLength(1);
+  expect(first.backend).toBe('webgpu');
+  first.dispose();
+  expect(listeners()).toBe(0);
+  // What waits for `device.lost` cannot be counted, but it would keep its model.
+  await turn();
+  collectGarbage();
+  // Node itself keeps one: an EventTarget holds the last listener that it removed for an aborted signal.
+  expect(gone.slice(0, -1).map((model) => model.deref())).toEqual([undefined, undefined]);
+});
+
+test('our own device errs, and the CPU computes; it is lost, and another one does', async () => {
+  const model = await load();
+  const events: string[] = [];
+  model.addEventListener('backend', () => events.push(model.backend));
+  browser.devices[0]!.err('no memory left');
+  await turn();
+  expect([model.backend, model.fallback]).toEqual(['cpu', 'no memory left']);
+  browser.devices[0]!.lose();
+  await expect.poll(() => model.backend).toBe('webgpu');
+  expect([model.adapter, model.fallback, events]).toEqual(['device 1', undefined, ['cpu', 'webgpu']]);
+  browser.devices[1]!.lose();
+  await expect.poll(() => events).toEqual(['cpu', 'webgpu', 'cpu', 'webgpu']);
+  expect(model.adapter).toBe('device 2');
+  model.dispose();
+});
+
+test('what is decided while a device is asked for again stands', async () => {
+  const model = await load();
+  model.addEventListener('backend', () => void model.setBackend('cpu'), { once: true });
+  browser.devices[0]!.lose();
+  await turn();
+  await turn();
+  expect([model.backend, model.fallback, browser.devices.length]).toEqual(['cpu', undefined, 1]);
+  model.dispose();
+});
+
+test('a device of the page that is lost is not replaced by one of ours', async () => {
+  const device = new FakeDevice('lent');
+  const model = await load(device);
+  // The page's own errors are none of ours.
+  device.err('of the page');
+  expect(model.backend).toBe('webgpu');
+  device.lose();
+  await turn();
+  await turn();
+  expect(model.backend).toBe('cpu');
+  expect(model.fallback).toMatch(/lost: destroyed/);
+  expect(browser.devices).toHaveLength(0);
+  model.dispose();
+});
