@@ -15,7 +15,7 @@ export default defineConfig({
       {
         extends: true,
         resolve: { alias: [{ find: /^three$/, replacement: at('node_modules/three-oldest/build/three.module.js') }] },
-        test: { name: 'oldest three', include: ['web/tests/three*.test.ts'] },
+        test: { name: 'oldest three', include: ['web/tests/three*.test.ts'], env: { CTSN_THREE: 'oldest' } },
       },
       // The demo site in headless Chromium, and the module as it is shipped.
       { extends: true, test: { name: 'browser', include: ['tests/browser/*.test.ts'] } },

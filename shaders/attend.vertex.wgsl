@@ -1,5 +1,5 @@
 // What attend.wgsl computes, by one invocation per vertex without any barrier: for software adapters. network.md §3.
-// Twin: crate/core/src/cpu/attend.rs
+// Twin: crate/core/src/cpu/network/attend.rs
 
 struct Params {
     vertices: u32,

@@ -1,6 +1,6 @@
 // ĥ_i = concat_c Σ_j α_ij (v_c + ε_c), α = softmax_j(q_c · (k_c + ε_c) / √d), then gate.wgsl. network.md §3.
-// Twin: crate/core/src/cpu/attend.rs
-// One workgroup per vertex, `lanes` invocations per head; neighbours in blocks, with a running softmax: any degree will do.
+// Twin: crate/core/src/cpu/network/attend.rs
+// One workgroup per vertex, `lanes` invocations per head; neighbours in blocks, with a running softmax, of any degree.
 
 struct Params {
     vertices: u32,

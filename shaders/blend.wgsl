@@ -1,4 +1,4 @@
-// Δ[i] = Σ_j w_j B_j[i], T = rest + c·Δ. network.md §2, §3, §4. Twin: crate/core/src/cpu/blend.rs
+// Δ[i] = Σ_j w_j B_j[i], T = rest + c·Δ. network.md §2, §3, §4. Twin: crate/core/src/cpu/network/blend.rs
 // One invocation per number: consecutive ones read consecutive vec4 of the basis.
 
 struct Params {

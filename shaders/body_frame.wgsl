@@ -1,4 +1,4 @@
-// N·A_j, N⁻¹ and the standardised pose vector γ. network.md §1. Twin: crate/core/src/cpu/body_frame.rs
+// N·A_j, N⁻¹ and the standardised pose vector γ. network.md §1. Twin: crate/core/src/cpu/network/body_frame.rs
 // In f32: the hip is taken off before anything is multiplied, so that far from the origin no digits are lost.
 
 struct Params {

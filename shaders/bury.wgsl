@@ -1,5 +1,6 @@
-// Takes body vertices that lie inside another part of the body out of what cloth is kept out of, by the body's winding number, a dipole
-// for each vertex. One workgroup for each vertex that may be buried. Twin: crate/core/src/cpu/bury.rs
+// Puts body vertices that lie inside another part of the body far away, where they keep no cloth out. They are found
+// by the body's winding number, every other vertex counting as a dipole. One workgroup for each that may be buried.
+// Twin: crate/core/src/cpu/repair/bury.rs
 
 struct Params {
     vertices: u32,

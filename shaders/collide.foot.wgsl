@@ -1,5 +1,5 @@
 // The body that cloth is kept out of, and how far a point is from its gap, for collide.wgsl and settle.wgsl.
-// Twins: crate/core/src/cpu/closest.rs, and collide.rs for the seeds.
+// Twins: crate/core/src/cpu/repair/closest.rs, and collide.rs for the seeds.
 
 struct Params {
     vertices: u32,
@@ -54,8 +54,8 @@ fn corner(vertex: u32, other: u32) -> u32 {
     return select(other, vertex, body[3u * other] >= params.away);
 }
 
-// The displacement to the gap, and the squared distance to the body around a place. (Parted in two functions, or with the highest corner
-// sought here instead of on the walk, a software adapter took 5 ms instead of 2.)
+// The displacement to the gap, and the squared distance to the body around a place. (Parted in two functions, or with
+// the highest corner sought here instead of on the walk, a software adapter took 5 ms instead of 2.)
 fn push_from(point: vec3<f32>, place: Place) -> vec4<f32> {
     let vertex = place.vertex;
     if (dot(point - position(vertex), normal(vertex)) - place.top > params.gap) {

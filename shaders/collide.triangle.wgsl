@@ -1,4 +1,4 @@
-// The closest point of a triangle, for collide.wgsl and settle.wgsl. Twin: crate/core/src/cpu/eight.rs
+// The closest point of a triangle, for collide.wgsl and settle.wgsl. Twin: crate/core/src/cpu/repair/eight.rs
 
 fn squared(way: vec3<f32>) -> f32 {
     return dot(way, way);
@@ -9,8 +9,8 @@ fn along(way: f32, length_squared: f32) -> f32 {
     return select(0.0, clamp(way / length_squared, 0.0, 1.0), length_squared > 0.0);
 }
 
-// The point of triangle abc closest to p, from the ways from a to p, b and c: squared distance from it less that from a, and its shares
-// of b and c. Above the triangle, else on the nearest edge.
+// The point of triangle abc closest to p, from the ways from a to p, b and c: squared distance from it less that from
+// a, and its shares of b and c. Above the triangle, else on the nearest edge.
 fn closest(ap: vec3<f32>, ab: vec3<f32>, ac: vec3<f32>) -> vec3<f32> {
     let bb = dot(ab, ab);
     let bc = dot(ab, ac);

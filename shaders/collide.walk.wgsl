@@ -1,5 +1,5 @@
 // Ways over the body's surface to the vertex nearest to a point, for collide.wgsl and settle.wgsl. Twins:
-// crate/core/src/cpu/closest.rs, and collide.rs for the seeds.
+// crate/core/src/cpu/repair/closest.rs, and collide.rs for the seeds.
 
 // Where a walk ended: vertex, squared distance to it, highest corner of the triangles around it along its normal.
 struct Place {

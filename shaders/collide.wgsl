@@ -1,5 +1,5 @@
-// How far cloth vertices must move to lie outside the posed body. The closest body point is searched by walking over the body's
-// surface from a few seeds. Twin: crate/core/src/cpu/collide.rs
+// How far cloth vertices must move to lie outside the posed body. The closest body point is searched by walking over
+// the body's surface from a few seeds. Twin: crate/core/src/cpu/repair/collide.rs
 
 // [n, 3]
 @group(0) @binding(6) var<storage, read> positions: array<f32>;
@@ -27,7 +27,8 @@ fn collide(@builtin(global_invocation_id) id: vec3<u32>) {
     let own = max(params.seeds - 1u, 1u);
     var by = push_from(point, from_seeds(i, point, 0u, own));
     let other = other_seed(i);
-    // Where the cloth comes near another part of the body than its own, the nearer part decides. So it does where cloth hangs free.
+    // Where the cloth comes near another part of the body than its own, the nearer part decides. So it does where cloth
+    // hangs free.
     let free = by.w > params.free * params.free;
     if (!free && other != seeds_of[i] && !is_elsewhere(squared(point - position(other)), by.w)) {
         let second = push_from(point, from_seeds(i, point, own, params.seeds));

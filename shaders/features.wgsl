@@ -1,4 +1,5 @@
-// h⁰ = (V - mean) / std and the edge potentials [V ; T_C] / edge_scale. network.md §3. Twin: crate/core/src/cpu/features.rs
+// h⁰ = (V - mean) / std and the edge potentials [V ; T_C] / edge_scale. network.md §3. Twin:
+// crate/core/src/cpu/network/features.rs
 
 struct Params {
     mean: vec3<f32>,

@@ -1,5 +1,5 @@
 // β = sigmoid(w_g · [ĥ ; r ; ĥ - r]), h = ReLU(LayerNorm((1-β) ĥ + β r)), eps 1e-5. network.md §3.
-// The end of attend.wgsl and attend.vertex.wgsl, to whose texts it is joined. Twin: crate/core/src/cpu/gate.rs
+// The end of attend.wgsl and attend.vertex.wgsl, to whose texts it is joined. Twin: crate/core/src/cpu/network/gate.rs
 
 // ĥ of vertex i, in `attended` from `base` on -> h of vertex i, by SIZE invocations t; `total` sums over them.
 fn gate(i: u32, t: u32, base: u32) {

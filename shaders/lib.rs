@@ -1,8 +1,11 @@
 //! The network's operations in WGSL, one per file, each the twin of the file of the same name in `crate/core/src/cpu`.
-//! This table says what the host must know of each: text, bindings, and `Params`, whose WGSL a test compares with the Rust.
+//! This table holds what the host must know of each: its text, bindings and `Params`. A test compares it with the WGSL.
 //!
-//! `NAME.VARIANT.wgsl` computes what `NAME.wgsl` does, for operands or adapters of a special kind; `NAME.edge.wgsl` is a part of both, and so are the parts of `collide` and `settle`. Rows that are read as vec4 are padded
-//! with zeros to whole vec4; [n, 3] is not padded, so that it can be a vertex attribute as it is.
+//! `NAME.VARIANT.wgsl` does what `NAME.wgsl` does, for special operands or adapters. Text that several shaders share
+//! has a file of its own: `attend.edge.wgsl`, and the parts of `collide` and `settle`. Rows that are read as vec4 are
+//! padded with zeros to whole vec4. [n, 3] is not padded, so it can be a vertex attribute.
+
+#![forbid(unsafe_code)]
 
 /// How a shader uses a storage buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,7 +21,7 @@ pub enum Access {
 pub struct Field {
     /// Name, the same in WGSL.
     pub name: &'static str,
-    /// Bytes before it.
+    /// Bytes before it in the buffer.
     pub offset: usize,
     /// Type in Rust: `u32`, `f32` or `[f32; 3]`.
     pub kind: &'static str,
@@ -35,7 +38,8 @@ pub struct Shader {
     pub params: &'static [Field],
     /// Storage buffers, from binding 1 on.
     pub bindings: &'static [Access],
-    /// Outputs of one workgroup in the units its dispatch is counted in, by x and y: vertices, numbers, or vec4 by rows.
+    /// Outputs of one workgroup along x and y, in the units that its dispatch counts: vertices, numbers, or vec4 and
+    /// rows.
     pub tile: [u32; 2],
 }
 
@@ -129,9 +133,10 @@ macro_rules! shaders {
 }
 
 shaders! {
-    /// Attention over the neighbours, gate and LayerNorm: offsets, neighbours, projected, potentials, weights -> output.
+    /// Attention over the neighbours, gate and LayerNorm: offsets, neighbours, projected, potentials, weights ->
+    /// output.
     ATTEND: Attend, "attend" + ["attend.edge", "gate"], [Read Read Read Read Read Write], [1, 1];
-    /// The same without barriers, and with room for what is attended to.
+    /// The same without barriers, one invocation per vertex; the last buffer holds ĥ on the way.
     ATTEND_VERTEX: Attend, "attend.vertex" + ["attend.edge", "gate"], [Read Read Read Read Read Write Write], [64, 1];
     /// Σ_j w_j B_j: weights, basis, rest, confidence -> residual, result.
     BLEND: Blend, "blend" + [], [Read Read Read Read Write Write], [64, 1];
@@ -159,9 +164,9 @@ shaders! {
     SURFACE: Surface, "surface" + [], [Read Read Read Write Write], [64, 1];
 }
 
-/// The override of attend.wgsl that says how many features it holds in workgroup memory.
+/// The override constant of attend.wgsl: number of features it holds in workgroup memory.
 pub const ROOM: &str = "room";
-/// The most that may be.
+/// Largest value of [`ROOM`].
 pub const MAX_FEATURES: usize = 2048;
 /// Invocations of a workgroup of attend.wgsl.
 pub const LANES: usize = 64;

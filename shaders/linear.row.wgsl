@@ -1,5 +1,5 @@
 // y = act(W x + b) of a single row: the inputs are dealt to 32 slices, whose sums meet in workgroup memory.
-// network.md §2. Twin: crate/core/src/cpu/linear.rs
+// network.md §2. Twin: crate/core/src/cpu/network/linear.rs
 
 struct Params {
     rows: u32,

@@ -1,5 +1,6 @@
-// y = act(W x + b), rows independent. network.md §2, §3. Twin: crate/core/src/cpu/linear.rs
-// A register tile of 8 rows × 4 columns per invocation. A tile in workgroup memory was 6 times slower on software adapters.
+// y = act(W x + b), rows independent. network.md §2, §3. Twin: crate/core/src/cpu/network/linear.rs
+// A register tile of 8 rows × 4 columns per invocation. A tile in workgroup memory was 6 times slower on software
+// adapters.
 
 struct Params {
     rows: u32,

@@ -1,5 +1,5 @@
 // Area-weighted vertex normals: the sum of the cross products of the triangles around a vertex, made unit length.
-// Gathered by vertex, in the order of the triangles. Twin: crate/core/src/cpu/normals.rs
+// Gathered by vertex, in the order of the triangles. Twin: crate/core/src/cpu/network/normals.rs
 
 struct Params {
     vertices: u32,

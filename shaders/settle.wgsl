@@ -1,5 +1,5 @@
-// x_i += δ_i, and a second look where that moved the cloth: it may have come into another part of the body, or to a place that the first
-// look missed. Twin: crate/core/src/cpu/settle.rs
+// x_i += δ_i, and a second look where that moved the cloth: it may have come into another part of the body, or to a
+// place that the first look missed. Twin: crate/core/src/cpu/repair/settle.rs
 
 // [n, 3]
 @group(0) @binding(6) var<storage, read> displacement: array<f32>;

@@ -1,5 +1,5 @@
 // Linear blend skinning x_i = Σ_j W[i,j] A_j T_i, then N⁻¹ where the world is wanted. network.md §4.
-// Twin: crate/core/src/cpu/skin.rs
+// Twin: crate/core/src/cpu/network/skin.rs
 
 struct Params {
     vertices: u32,

@@ -1,5 +1,5 @@
-// One round of spreading a displacement over the cloth: every vertex follows its neighbours, and those that must move still reach
-// their gap. Twin: crate/core/src/cpu/spread.rs
+// One round of spreading a displacement over the cloth: every vertex follows its neighbours, and those that must move
+// still reach their gap. Twin: crate/core/src/cpu/repair/spread.rs
 
 struct Params {
     vertices: u32,

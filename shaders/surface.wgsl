@@ -1,4 +1,5 @@
-// The drawn surface: every drawn vertex has the position and normal of its cloth vertex. Twin: crate/core/src/cpu/surface.rs
+// The drawn surface: every drawn vertex has the position and normal of its cloth vertex. Twin:
+// crate/core/src/cpu/network/surface.rs
 
 struct Params {
     // d

@@ -1,4 +1,4 @@
-//! Every shader against naga, tint where it is installed, this table and WebGPU's default limits.
+//! naga (and tint, where installed) accept every shader; it matches the table and keeps to WebGPU's default limits.
 
 use super::{ALL, Access, Field, LANES, MAX_FEATURES, Shader};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
@@ -119,7 +119,7 @@ fn files_are_those_of_the_table_and_short() {
     texts.iter().for_each(|text| assert!(text.lines().count() <= 120, "longer than 120 lines: {text}"));
 }
 
-/// naga alone misses barriers in flow that is not uniform.
+/// Naga alone misses barriers in control flow that is not uniform.
 #[test]
 #[cfg_attr(not(tint), ignore = "tint is not installed")]
 fn tint_accepts_each() {

@@ -1,8 +1,10 @@
-// The demo site, built and served, in headless Chromium: it moves, it agrees with the native result, it complains about nothing.
+// The demo site, built and served, in headless Chromium: it moves, agrees with the native prediction, and complains
+// about nothing.
 import { fileURLToPath } from 'node:url';
 import { afterAll, afterEach, beforeAll, expect, test } from 'vitest';
 import type { StreamChoice } from 'ctsn';
 import { predictNatively } from './native.js';
+import type { Demo } from '../../www/src/hook.js';
 import { ask, out, Site } from './page.js';
 import { difference } from './safetensors.js';
 import tolerances from './tolerances.json' with { type: 'json' };
@@ -15,7 +17,7 @@ beforeAll(async () => (site = await Site.open()));
 afterEach(() => site.leave());
 afterAll(() => site?.close());
 
-test('the page plays, predicts every frame, and its controls work', async () => {
+test('the page plays, goes on predicting, and its controls work', async () => {
   const { page, complaints } = await site.visit();
   await page.waitForFunction(() => window.ctsnDemo!.predictions! >= 5);
   expect(await ask(page, (demo) => demo.milliseconds, null)).toBeGreaterThan(0);
@@ -38,14 +40,21 @@ test('the page plays, predicts every frame, and its controls work', async () => 
   expect(complaints).toEqual([]);
 });
 
-test('vertices and normals equal the native result of the same frames', async () => {
+test('vertices and normals equal the native prediction of the same poses', async () => {
   const { page, complaints } = await site.visit();
   const clips = await ask(page, (demo) => demo.clips, null);
   expect(Object.keys(clips).length).toBeGreaterThan(0);
-  const frames = Object.entries(clips).flatMap(([clip, length]) => [0.13, 0.7].map((part) => ({ clip, frame: Math.floor(part * length) })));
   const captures = [];
-  for (const wanted of frames) captures.push(await ask(page, (demo, { clip, frame }) => demo.show(clip, frame), wanted));
-  const native = predictNatively(model, captures.map(({ pose }) => pose));
+  for (const [clip, length] of Object.entries(clips)) {
+    for (const part of [0.13, 0.7]) {
+      const wanted = { clip, frame: Math.floor(part * length) };
+      captures.push(await ask(page, (demo, { clip, frame }) => demo.show(clip, frame), wanted));
+    }
+  }
+  const native = predictNatively(
+    model,
+    captures.map(({ pose }) => pose),
+  );
   captures.forEach(({ clip, frame, vertex, positions, normals }, i) => {
     const drawn = (values: Float32Array) => vertex.flatMap((at) => [...values.subarray(3 * at, 3 * at + 3)]);
     const label = `${clip}, frame ${frame}`;
@@ -53,7 +62,7 @@ test('vertices and normals equal the native result of the same frames', async ()
     expect(difference(positions, drawn(native.positions[i]!)), label).toBeLessThanOrEqual(tolerances.positions.most);
     expect(difference(normals, drawn(native.normals[i]!)), label).toBeLessThanOrEqual(tolerances.normals.most);
   });
-  // Frames that do not differ would compare nothing.
+  // Predictions that do not differ would compare nothing.
   expect(difference(captures[0]!.positions, captures[1]!.positions)).toBeGreaterThan(0.005);
   expect(complaints).toEqual([]);
 });
@@ -65,16 +74,17 @@ test('the three sources of the cloth differ on the page', async () => {
   const found: Record<string, number[]> = {};
   for (const streams of ['both', 'skeleton', 'none'] satisfies StreamChoice[]) {
     const wanted = { clip, frame, streams };
-    found[streams] = (await ask(page, (demo, { clip, frame, streams }) => demo.show(clip, frame, streams as StreamChoice), wanted)).positions;
+    const show = (demo: Demo, { clip, frame, streams }: typeof wanted) => demo.show(clip, frame, streams);
+    found[streams] = (await ask(page, show, wanted)).positions;
     await page.screenshot({ path: `${out}/${streams}.png` });
   }
-  // A tenth of a millimetre: what the smaller, the mesh stream, surely does somewhere.
+  // The mesh stream does less than the skeleton stream, but surely a tenth of a millimetre somewhere.
   expect(difference(found['both']!, found['skeleton']!)).toBeGreaterThan(1e-4);
   expect(difference(found['skeleton']!, found['none']!)).toBeGreaterThan(1e-3);
   expect(complaints).toEqual([]);
 });
 
-test('?pose=CLIP:FRAME freezes the page at that frame', async () => {
+test('?pose=CLIP:FRAME stops the page at that frame of the clip', async () => {
   const first = await site.visit();
   const [[clip, length]] = Object.entries(await ask(first.page, (demo) => demo.clips, null)) as [[string, number]];
   const wanted = { clip, frame: Math.floor(length / 3) };
@@ -83,8 +93,9 @@ test('?pose=CLIP:FRAME freezes the page at that frame', async () => {
   const { page, complaints } = await site.visit(`?pose=${encodeURIComponent(clip)}:${wanted.frame}`);
   expect(await page.getByRole('button', { name: 'Play' }).isVisible()).toBe(true);
   expect(await page.textContent('#clock')).toContain(`${(wanted.frame / 30).toFixed(2)} s of`);
-  const frozen = await ask(page, (demo, { clip, frame }) => demo.show(clip, frame), wanted);
-  expect(frozen.positions).toEqual(shown.positions);
+  const stopped = await ask(page, (demo) => demo.capture(), null);
+  expect(stopped).toMatchObject({ clip, frame: expect.closeTo(wanted.frame, 3) as number });
+  expect(stopped.positions).toEqual(shown.positions);
   await page.screenshot({ path: `${out}/demo.png` });
   expect(complaints).toEqual([]);
 });
@@ -93,14 +104,13 @@ test('a failure is told on the page: no model, a broken model, no such clip', as
   const shirt = '**/tshirt.safetensors';
   const missing = await site.visit('', (page) => page.route(shirt, (route) => route.fulfill({ status: 404 })));
   expect(await missing.page.getByRole('alert').textContent()).toContain('HTTP 404');
-  const broken = await site.visit('', (page) => page.route(shirt, (route) => route.fulfill({ body: 'no model at all' })));
+  const noModel = { body: 'no model at all' };
+  const broken = await site.visit('', (page) => page.route(shirt, (route) => route.fulfill(noModel)));
   expect(await broken.page.getByRole('alert').textContent()).toContain('not a safetensors file');
   await broken.page.screenshot({ path: `${out}/failure.png` });
   const nowhere = await site.visit('?pose=no_such_clip:1');
   expect(await nowhere.page.getByRole('alert').textContent()).toContain('no_such_clip');
-  for (const { complaints } of [missing, broken, nowhere]) {
-    expect(complaints.length).toBeGreaterThan(0);
-    }
+  for (const { complaints } of [missing, broken, nowhere]) expect(complaints.length).toBeGreaterThan(0);
 });
 
 test('the cloth is computed elsewhere at a click, and the page says where and why', async () => {
@@ -116,10 +126,12 @@ test('the cloth is computed elsewhere at a click, and the page says where and wh
   expect(difference(onGpu.positions, onCpu.positions)).toBeLessThanOrEqual(tolerances.positions.most);
   await page.screenshot({ path: `${out}/webgpu.png` });
   await page.getByLabel('Faster').check({ force: true });
-  await expect.poll(() => page.textContent('#reason'), patience).toMatch(/the CPU is faster here: [\d.]+ ms a prediction, the GPU [\d.]+ ms|Measured: [\d.]+ ms/);
+  const measured = /the CPU is faster here: [\d.]+ ms a prediction, the GPU [\d.]+ ms|Measured: [\d.]+ ms/;
+  await expect.poll(() => page.textContent('#reason'), patience).toMatch(measured);
   await page.screenshot({ path: `${out}/auto.png` });
   await site.leave();
-  const none = await site.visit('?backend=webgpu', (bare) => bare.addInitScript("Object.defineProperty(navigator, 'gpu', { value: undefined })"));
+  const hide = "Object.defineProperty(navigator, 'gpu', { value: undefined })";
+  const none = await site.visit('?backend=webgpu', (bare) => bare.addInitScript(hide));
   await expect.poll(() => none.page.textContent('#reason'), patience).toContain('no WebGPU');
   expect(await ask(none.page, (demo) => demo.backend, null)).toBe('cpu');
   expect([...complaints, ...none.complaints]).toEqual([]);

@@ -1,4 +1,4 @@
-// The built demo site, served, and Chromium without a screen to look at it. Whatever a page complains about is kept.
+// The built demo site, served, and headless Chromium to open it. Whatever a page complains about is kept.
 import { mkdirSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 import { chromium as playwright, type Browser, type Page } from 'playwright-core';
@@ -36,13 +36,14 @@ export class Site {
   /** Opens the page at `query`; `prepare` may arrange its network first. */
   async visit(query = '', prepare: (page: Page) => Promise<unknown> = async () => {}): Promise<Visit> {
     const page = await this.#browser.newPage({ viewport: { width: 960, height: 600 } });
-    // Software rendering on a shared machine: the first frame, with its shaders, may take half a minute.
+    // Rendered in software on a shared machine, the first picture, with its shaders, may take half a minute.
     page.setDefaultTimeout(120_000);
     const complaints: string[] = [];
     page.on('console', (message) => {
       // Reading pixels back for a screenshot stalls a software renderer, and its driver says so.
       const harmless = message.text().includes('GPU stall due to ReadPixels');
-      if (['error', 'warning'].includes(message.type()) && !harmless) complaints.push(`${message.type()}: ${message.text()}`);
+      if (!['error', 'warning'].includes(message.type()) || harmless) return;
+      complaints.push(`${message.type()}: ${message.text()}`);
     });
     page.on('pageerror', (error) => complaints.push(`exception: ${error.message}`));
     page.on('requestfailed', (request) => complaints.push(`request: ${request.url()} ${request.failure()?.errorText}`));
@@ -52,7 +53,7 @@ export class Site {
     return { page, complaints };
   }
 
-  /** Closes every page, so that none goes on drawing beside the next. */
+  /** Closes every page, so that none goes on drawing while the next is tested. */
   async leave(): Promise<void> {
     for (const context of this.#browser.contexts()) await context.close();
   }
@@ -64,7 +65,11 @@ export class Site {
 }
 
 /** Runs `work` on the page's handle. */
-export function ask<Argument, Answer>(page: Page, work: (demo: Demo, argument: Argument) => Answer, argument: Argument): Promise<Awaited<Answer>> {
+export function ask<Argument, Answer>(
+  page: Page,
+  work: (demo: Demo, argument: Argument) => Answer,
+  argument: Argument,
+): Promise<Awaited<Answer>> {
   // Playwright sends the text of a function; both travel as one expression.
   return page.evaluate(`(${work.toString()})(window.ctsnDemo, ${JSON.stringify(argument ?? null)})`);
 }

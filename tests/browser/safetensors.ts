@@ -1,4 +1,5 @@
-// The container format of models and poses, for tests that write and read such files: 8 bytes of header length, a JSON header, data.
+// The container format of models and poses, for tests that read and write such files: 8 bytes of header length, a JSON
+// header, data.
 import { readFileSync } from 'node:fs';
 
 /** A tensor of float32. */
@@ -7,13 +8,19 @@ export interface Tensor {
   values: Float32Array;
 }
 
+interface Entry {
+  dtype: string;
+  shape: number[];
+  data_offsets: number[];
+}
+
 /** A file's float32 tensors and its metadata. */
 export function readTensors(file: string): { tensors: Record<string, Tensor>; metadata: Record<string, string> } {
   const bytes = readFileSync(file);
   const length = Number(bytes.readBigUInt64LE());
   const { __metadata__: metadata = {}, ...entries } = JSON.parse(bytes.toString('utf8', 8, 8 + length));
   const tensors: Record<string, Tensor> = {};
-  for (const [name, entry] of Object.entries(entries as Record<string, { dtype: string; shape: number[]; data_offsets: number[] }>)) {
+  for (const [name, entry] of Object.entries(entries as Record<string, Entry>)) {
     if (entry.dtype !== 'F32') continue;
     const data = bytes.subarray(8 + length + entry.data_offsets[0]!, 8 + length + entry.data_offsets[1]!);
     tensors[name] = { shape: entry.shape, values: new Float32Array(Uint8Array.from(data).buffer) };
@@ -54,7 +61,9 @@ export function toColumns(rows: Float32Array): Float32Array {
   const columns = new Float32Array(16 * joints);
   for (let joint = 0; joint < joints; joint++) {
     for (let row = 0; row < 3; row++) {
-      for (let column = 0; column < 4; column++) columns[16 * joint + 4 * column + row] = rows[12 * joint + 4 * row + column]!;
+      for (let column = 0; column < 4; column++) {
+        columns[16 * joint + 4 * column + row] = rows[12 * joint + 4 * row + column]!;
+      }
     }
     columns[16 * joint + 15] = 1;
   }
@@ -67,13 +76,15 @@ export function toRows(columns: ArrayLike<number>): Float32Array {
   const rows = new Float32Array(12 * joints);
   for (let joint = 0; joint < joints; joint++) {
     for (let row = 0; row < 3; row++) {
-      for (let column = 0; column < 4; column++) rows[12 * joint + 4 * row + column] = columns[16 * joint + 4 * column + row]!;
+      for (let column = 0; column < 4; column++) {
+        rows[12 * joint + 4 * row + column] = columns[16 * joint + 4 * column + row]!;
+      }
     }
   }
   return rows;
 }
 
-/** Largest absolute difference; a NaN anywhere is the answer. */
+/** Largest absolute difference; NaN if there is a NaN anywhere, or the lengths differ. */
 export function difference(a: ArrayLike<number>, b: ArrayLike<number>): number {
   if (a.length !== b.length) return NaN;
   let largest = 0;

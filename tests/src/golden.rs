@@ -1,4 +1,5 @@
-//! The golden models and every intermediate result, computed by code independent of ours. Tolerances stand in the files.
+//! The golden models and every intermediate result, computed by code independent of ours. Tolerances stand in the
+//! files.
 
 use ctsn_core::cpu::Level;
 use ctsn_core::file::Tensors;

@@ -1,22 +1,11 @@
 //! A body one part of which lies inside another.
 
-use crate::sphere::{AROUND, RADIUS, RINGS, length, model, sphere_of};
-use ctsn_core::cpu::collide::LANDMARKS;
+use crate::sphere::{RADIUS, length, model};
+use ctsn_core::cpu::repair::bury::nested;
+use ctsn_core::cpu::repair::collide::LANDMARKS;
 use ctsn_core::model::HostModel;
 use fastrand::Rng;
 use std::ops::Range;
-
-/// A sphere and a smaller one, raised by so much, whose vertices follow the landmarks and may be buried: positions, triangles.
-fn nested(raised: f32) -> (Vec<f32>, Vec<u32>) {
-    let (outer, outer_faces) = sphere_of(2.0 * RADIUS, AROUND, RINGS);
-    let (inner, inner_faces) = sphere_of(RADIUS, 10, 7);
-    assert_eq!(inner.len(), 3 * INNER.len());
-    let raised = inner.chunks_exact(3).flat_map(|p| [p[0], p[1] + raised, p[2]]);
-    let positions = outer[..3 * LANDMARKS].iter().copied().chain(raised).chain(outer[3 * LANDMARKS..].to_vec());
-    let place = |i: &u32| if (*i as usize) < LANDMARKS { *i } else { *i + INNER.len() as u32 };
-    let triangles = outer_faces.iter().map(place).chain(inner_faces.iter().map(|i| i + LANDMARKS as u32));
-    (positions.collect(), triangles.collect())
-}
 
 /// Vertices of the smaller sphere.
 const INNER: Range<usize> = LANDMARKS..LANDMARKS + 62;

@@ -1,9 +1,11 @@
 //! Spheres for bodies.
 
 use crate::random::{self, Shape};
-use ctsn_core::model::{Body, HostModel, Skin};
+use ctsn_core::model::{Body, HostModel, Skinning};
+use ctsn_core::suite;
 use ctsn_core::topology::Graph;
 use fastrand::Rng;
+use std::sync::Arc;
 
 /// Radius of [`sphere`], metres.
 pub const RADIUS: f32 = 0.05;
@@ -14,30 +16,7 @@ pub const RINGS: u32 = 13;
 
 /// A sphere as a closed mesh: positions [b, 3], triangles.
 pub fn sphere() -> (Vec<f32>, Vec<u32>) {
-    sphere_of(RADIUS, AROUND, RINGS)
-}
-
-/// The same of this radius, with so many vertices around and rings from pole to pole.
-pub fn sphere_of(radius: f32, around: u32, rings: u32) -> (Vec<f32>, Vec<u32>) {
-    let ring = |row: u32| {
-        let polar = std::f32::consts::PI * row as f32 / rings as f32;
-        (0..around).flat_map(move |i| {
-            let angle = std::f32::consts::TAU * i as f32 / around as f32;
-            [polar.sin() * angle.cos(), polar.cos(), polar.sin() * angle.sin()].map(|c| c * radius)
-        })
-    };
-    let mut positions = vec![0.0, radius, 0.0, 0.0, -radius, 0.0];
-    positions.extend((1..rings).flat_map(ring));
-    let at = |row: u32, i: u32| 2 + (row - 1) * around + i % around;
-    let mut triangles = Vec::new();
-    for i in 0..around {
-        triangles.extend([0, at(1, i + 1), at(1, i), 1, at(rings - 1, i), at(rings - 1, i + 1)]);
-        for row in 1..rings - 1 {
-            let [a, b, c, d] = [at(row, i), at(row, i + 1), at(row + 1, i), at(row + 1, i + 1)];
-            triangles.extend([a, b, c, b, d, c]);
-        }
-    }
-    (positions, triangles)
+    suite::sphere(RADIUS, AROUND, RINGS)
 }
 
 /// A sphere that follows the first joint, for `n` cloth vertices.
@@ -52,10 +31,10 @@ pub fn model(rng: &mut Rng, places: Vec<f32>, positions: Vec<f32>, triangles: Ve
     let n = places.len() / 3;
     let shape = Shape { vertices: n, joints: 1, embedding: 1, basis: 1, heads: 1, per_head: 2, layers: 1 };
     let mut model = random::model(rng, shape);
-    (model.rest, model.skin, model.triangles) = (places, follow(n), Vec::new());
-    (model.skeleton, model.mesh, model.surface) = (vec![0.0; 3 * n], vec![0.0; 3 * n], None);
+    (model.rest, model.skinning, model.triangles) = (places, follow(n), Vec::new());
+    (model.skeleton_basis, model.mesh_basis, model.surface) = (vec![0.0; 3 * n], vec![0.0; 3 * n], None);
     model.graph = Graph::new(n, &[]);
-    model.rig.inverse_bind = vec![[1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0]];
+    Arc::make_mut(&mut model.rig).inverse_bind = vec![[1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0]];
     let vertices = positions.len() / 3;
     let seeds = (0..4 * n).map(|_| rng.u32(..vertices as u32)).collect();
     model.body = Some(Body::new(positions, follow(vertices), triangles, seeds));
@@ -63,8 +42,8 @@ pub fn model(rng: &mut Rng, places: Vec<f32>, positions: Vec<f32>, triangles: Ve
 }
 
 /// `count` vertices that follow the first joint.
-fn follow(count: usize) -> Skin<Vec<f32>, Vec<u32>> {
-    Skin { joints: vec![0; count], weights: vec![1.0; count], width: 1 }
+fn follow(count: usize) -> Skinning<Vec<f32>, Vec<u32>> {
+    Skinning { joints: vec![0; count], weights: vec![1.0; count], width: 1 }
 }
 
 /// Length of a vector.

@@ -1,5 +1,5 @@
-//! Nothing allocates per frame: after the first prediction the allocator is not called again. Native only; one test, so that
-//! no other thread of this binary allocates for its own reasons.
+//! Nothing allocates per frame: after the first prediction the allocator is not called again. Native only; one test, so
+//! that no other thread of this binary allocates for its own reasons.
 #![cfg(not(target_arch = "wasm32"))]
 
 use ctsn_core::cpu::Level;

@@ -1,13 +1,14 @@
-//! A clip played forwards, backwards and at random gives the same cloth for the same pose, on CPU and GPU, and they agree: the repair of
-//! penetration has no memory.
+//! A clip played forwards, backwards and at random gives the same cloth for the same pose, on CPU and GPU, and they
+//! agree: the repair of penetration has no memory.
 #![cfg(not(target_arch = "wasm32"))]
 
-use ctsn_author::simulate::between;
-use ctsn_author::{body, rig, synthetic, train};
 use ctsn_core::cpu::Level;
 use ctsn_core::model::HostModel;
 use ctsn_core::{Predictor, Streams};
+use ctsn_rig as rig;
+use ctsn_rig::path::between;
 use ctsn_tests::finite::largest;
+use ctsn_train::{body, synthetic, training as train};
 use fastrand::Rng;
 use pollster::block_on;
 

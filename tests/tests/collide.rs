@@ -1,10 +1,8 @@
 //! Penetration repair: what is inside a body comes out, what is outside stays, and no body makes NaN; the GPU agrees.
 
-use ctsn_core::cpu::{
-    Level,
-    closest::{DEPTH, GAP},
-    spread::FOLLOW,
-};
+use ctsn_core::cpu::Level;
+use ctsn_core::cpu::repair::closest::{DEPTH, GAP};
+use ctsn_core::cpu::repair::spread::FOLLOW;
 use ctsn_core::model::HostModel;
 use ctsn_core::topology::Graph;
 use ctsn_core::{Predictor, Streams};
@@ -58,7 +56,8 @@ fn what_is_inside_comes_out_and_what_is_outside_stays() {
     assert!(inside > 100 && outside > 1000, "{inside} inside, {outside} outside");
 }
 
-/// Two spheres far apart, a landmark of either first; the cloth, in and around the second, has all its seeds on the first.
+/// Two spheres far apart, a landmark of either first; the cloth, in and around the second, has all its seeds on the
+/// first.
 fn two_spheres(rng: &mut Rng) -> HostModel {
     let (near, faces) = sphere();
     let count = (near.len() / 3) as u32;
@@ -166,8 +165,8 @@ fn neighbours_follow() {
 /// Middle of the upper sphere, metres.
 const UPPER: f32 = 0.14;
 
-/// One sphere above another; the first cloth vertex is deep in the lower one and leaves it upwards, the second is its neighbour,
-/// just below the upper one.
+/// One sphere above another; the first cloth vertex is deep in the lower one and leaves it upwards, the second is its
+/// neighbour, just below the upper one.
 fn dragged(rng: &mut Rng) -> HostModel {
     let (lower, faces) = sphere();
     let count = (lower.len() / 3) as u32;

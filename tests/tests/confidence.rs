@@ -1,12 +1,14 @@
 //! Poses outside the range seen in training: the cloth goes over from the network's to plain skinning, without a jump.
 
-use ctsn_core::cpu::{Level, skin::skin};
-use ctsn_core::device::Space;
+use ctsn_core::cpu::{Cpu, Level};
 use ctsn_core::model::{HostModel, Storage};
+use ctsn_core::network::skin;
+use ctsn_core::operation::Space;
 use ctsn_core::pose::{BodyFrame, Range};
 use ctsn_core::{Error, Predictor, Streams};
 use ctsn_tests::finite::largest;
 use ctsn_tests::golden;
+use std::sync::Arc;
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::{wasm_bindgen_test as test, wasm_bindgen_test_configure};
 
@@ -17,7 +19,8 @@ wasm_bindgen_test_configure!(run_in_browser);
 fn seen(golden: &golden::Golden) -> (HostModel, Vec<Vec<f32>>) {
     let (mut model, poses) = (golden.host_model(), golden.read().poses);
     let frames: Vec<BodyFrame> = poses.iter().map(|pose| frame(&model, pose)).collect();
-    model.rig.range = Range::of(&model.rig.inverse_bind, &frames);
+    let rig = Arc::make_mut(&mut model.rig);
+    rig.range = Range::of(&rig.inverse_bind, &frames);
     (model, poses)
 }
 
@@ -60,8 +63,7 @@ fn far_from_them_the_cloth_is_skinned_plainly() {
             predictor.predict_row_major(&wild, Streams::Both).expect("a finite prediction");
             assert_eq!(predictor.confidence(), 0.0);
             let (mut plain, transforms) = (vec![0.0; model.rest.len()], frame(&model, &wild).transforms);
-            let (joints, weights) = (&model.skin.joints, &model.skin.weights);
-            skin(Level::new(), &model.rest, joints, weights, &transforms, Space::World, &mut plain);
+            skin(&mut Cpu::new(), &model.rest, &model.skinning, &transforms, Space::World, &mut plain);
             let error = largest(predictor.positions(), &plain);
             assert!(error <= 1e-6 * metres.abs(), "{} {metres}: {error} m", golden.name);
         }
@@ -91,7 +93,7 @@ fn a_range_is_written_and_read_and_one_that_is_none_is_refused() {
     let (mut model, _) = seen(&golden::ALL[0]);
     let read = HostModel::parse(&model.to_bytes(Storage::F16)).expect("a model");
     assert_eq!(read.rig.range, model.rig.range);
-    if let Some(range) = &mut model.rig.range {
+    if let Some(range) = &mut Arc::make_mut(&mut model.rig).range {
         range.min[7] = range.max[7] + 1.0;
     }
     let error = HostModel::parse(&model.to_bytes(Storage::F32)).expect_err("wanted a refusal");

@@ -1,69 +1,11 @@
 //! The rules of ARCHITECTURE.md that a search of the tree can check. Native only: it reads the sources.
 #![cfg(not(target_arch = "wasm32"))]
 
-use std::path::{Path, PathBuf};
-use std::process::Command;
+use ctsn_tests::tree::{Source, say, tree};
 
 /// Longest file and longest function, lines.
 const FILE: usize = 300;
 const FUNCTION: usize = 60;
-
-/// A text file of the repository.
-struct Source {
-    /// Path from the root, with forward slashes.
-    path: String,
-    text: String,
-}
-
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
-}
-
-/// What a program says, run in the root.
-fn say(program: &str, arguments: &[&str]) -> String {
-    let output = Command::new(program).args(arguments).current_dir(root()).output();
-    let output = output.unwrap_or_else(|error| panic!("{program}: {error}"));
-    assert!(output.status.success(), "{program}: {}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8(output.stdout).expect("UTF-8")
-}
-
-/// Every text file that git keeps or would keep.
-fn tree() -> Vec<Source> {
-    let list = say("git", &["ls-files", "--cached", "--others", "--exclude-standard"]);
-    let read = |path: &str| {
-        let text = std::fs::read(root().join(path)).ok().and_then(|bytes| String::from_utf8(bytes).ok())?;
-        Some(Source { path: path.to_owned(), text })
-    };
-    let tree: Vec<Source> = list.lines().filter_map(read).collect();
-    assert!(tree.iter().any(|source| source.path == "crate/core/src/lib.rs"), "git found no sources");
-    tree
-}
-
-impl Source {
-    fn is_rust(&self) -> bool {
-        self.path.ends_with(".rs")
-    }
-
-    fn is_typescript(&self) -> bool {
-        self.path.ends_with(".ts")
-    }
-
-    /// Shipped code: of the crates, the package and the site, without their tests.
-    fn is_product(&self) -> bool {
-        let folders = ["crate/", "web/src/", "www/src/"];
-        let test = ["/tests/", "/tests.rs", "/test.rs"].iter().any(|part| self.path.contains(part));
-        (self.is_rust() || self.is_typescript()) && folders.iter().any(|folder| self.path.starts_with(folder)) && !test
-    }
-
-    /// Asserts that none of `words` is in the text.
-    fn lacks(&self, words: &[&str], why: &str) {
-        for word in words {
-            if let Some(line) = self.text.lines().position(|line| line.contains(word)) {
-                panic!("{}:{}: {word} — {why}", self.path, line + 1);
-            }
-        }
-    }
-}
 
 #[test]
 fn the_model_alone_knows_tensor_names() {
@@ -92,7 +34,7 @@ fn the_model_alone_knows_tensor_names() {
     let shared = [&shared[..], &body].concat();
     let elsewhere = |source: &&Source| source.is_product() && !source.path.starts_with("crate/core/src/model/");
     for source in tree.iter().filter(elsewhere) {
-        let known: &[&str] = if source.path == "crate/author/src/dataset.rs" { &shared } else { &[] };
+        let known: &[&str] = if source.path == "crate/train/src/dataset/setup.rs" { &shared } else { &[] };
         let words: Vec<&str> = names.iter().map(String::as_str).filter(|name| !known.contains(name)).collect();
         source.lacks(&words, "only crate/core/src/model knows tensor names");
     }
@@ -110,26 +52,35 @@ fn one_file_knows_safetensors() {
 fn every_operation_has_its_twins() {
     let tree = tree();
     let has = |path: &str| tree.iter().any(|source| source.path == path);
-    let device = tree.iter().find(|source| source.path == "crate/core/src/device.rs").expect("device.rs");
-    let (_, body) = device.text.split_once("pub trait Device {").expect("trait Device");
-    let functions = body.lines().filter_map(|line| line.strip_prefix("    fn ")?.split('(').next());
-    // Storage is no operation. What follows the network, and what feeds it from the pose alone, needs no gradient.
-    let operations: Vec<&str> = functions.filter(|name| !["buffer", "indices", "write"].contains(name)).collect();
-    for known in ["linear", "blend", "skin", "attend", "normals"] {
-        assert!(operations.contains(&known), "trait Device has no {known}");
+    let has_kernel =
+        |name: &str| ["network", "repair"].iter().any(|part| has(&format!("crate/core/src/cpu/{part}/{name}.rs")));
+    let list = tree.iter().find(|source| source.path == "crate/core/src/operation.rs").expect("operation.rs");
+    let (_, list) = list.text.split_once("operations! { $").expect("the list of operations");
+    let (list, _) = list.split_once("\n}").expect("its end");
+    // `    BodyFrame<R, W> {` -> `body_frame`.
+    let snake = |name: &str| -> String {
+        let upper =
+            |(i, c): (usize, char)| (i > 0 && c.is_uppercase()).then_some('_').into_iter().chain(c.to_lowercase());
+        name.chars().enumerate().flat_map(upper).collect()
+    };
+    let names = list.lines().filter_map(|line| line.strip_prefix("    ")?.strip_suffix("> {")?.split('<').next());
+    let operations: Vec<(&str, String)> = names.map(|name| (name, snake(name))).collect();
+    for known in ["BodyFrame", "Linear", "Blend", "Skin", "Attend", "Normals", "Settle"] {
+        assert!(operations.iter().any(|(name, _)| *name == known), "the list of operations has no {known}");
     }
-    for operation in &operations {
-        assert!(has(&format!("crate/core/src/cpu/{operation}.rs")), "{operation} has no file in crate/core/src/cpu");
-        let gradient = has(&format!("crate/author/src/train/gradient/{operation}.rs"));
-        let wanted = !["body_frame", "features", "normals", "bury", "collide", "spread", "settle", "surface"]
-            .contains(operation);
-        assert_eq!(gradient, wanted, "{operation}: a file in crate/author/src/train/gradient");
-        assert!(has(&format!("shaders/{operation}.wgsl")), "{operation} has no shader");
+    let folder = "crate/train/src/training/gradient";
+    let gradients = tree.iter().find(|source| source.path == format!("{folder}/mod.rs")).expect("the gradients");
+    for (name, file) in &operations {
+        assert!(has_kernel(file), "{name} has no file in crate/core/src/cpu");
+        assert!(has(&format!("shaders/{file}.wgsl")), "{name} has no shader");
+        let runs_backwards = gradients.text.contains(&format!("Operation::{name}("));
+        assert_eq!(has(&format!("{folder}/{file}.rs")), runs_backwards, "{name}: a file in {folder}");
+        assert!(runs_backwards || !["Linear", "Blend", "Skin", "Attend"].contains(name), "{name} has no gradient");
     }
     // And each shader, NAME.wgsl or NAME.VARIANT.wgsl, has its twin.
     let shaders = tree.iter().filter_map(|source| source.path.strip_prefix("shaders/")?.strip_suffix(".wgsl"));
     for name in shaders.filter_map(|file| file.split('.').next()) {
-        assert!(has(&format!("crate/core/src/cpu/{name}.rs")), "{name}.wgsl has no twin in crate/core/src/cpu");
+        assert!(has_kernel(name), "{name}.wgsl has no twin in crate/core/src/cpu");
     }
 }
 
@@ -145,8 +96,8 @@ fn files_are_short() {
     assert!(found.is_empty(), "longer than {FILE} lines, without saying why: {found:#?}");
 }
 
-/// Name and length of every function, in lines. Counts on the formatter: a body ends where its closing brace stands alone,
-/// as far in as the function began.
+/// Name and length of every function, in lines. Counts on the formatter: a body ends where its closing brace stands
+/// alone, as far in as the function began.
 fn functions(text: &str) -> Vec<(&str, usize)> {
     let lines: Vec<&str> = text.lines().collect();
     let begins = |line: &str| {
@@ -210,6 +161,19 @@ fn platforms_keep_to_their_crates() {
     assert!(wasm > 0 && core > 10, "{wasm} files of crate/wasm, {core} of crate/core");
 }
 
+/// `wrap` < `simulate` < `garment` within crate/cloth; tests dress what they simulate.
+#[test]
+fn the_rooms_of_cloth_know_none_above_them() {
+    let rooms = [("wrap/", &["crate::simulate", "crate::garment"][..]), ("simulate/", &["crate::garment"])];
+    for (room, above) in rooms {
+        let path = format!("crate/cloth/src/{room}");
+        let all = tree();
+        let own = all.iter().filter(|source| source.path.starts_with(&path) && !source.path.contains("/tests/"));
+        assert!(own.clone().count() > 5, "the room {room}");
+        own.for_each(|source| source.lacks(above, "garment stands on simulate, and both on wrap"));
+    }
+}
+
 #[test]
 fn one_file_imports_the_glue() {
     let tree = tree();
@@ -228,7 +192,7 @@ fn the_module_holds_no_authoring() {
     let packages: Vec<&str> = list.lines().filter_map(|line| line.split(' ').next()).collect();
     assert!(packages.contains(&"ctsn-core") && packages.contains(&"wasm-bindgen"), "{packages:?}");
     for package in
-        ["ctsn-author", "ctsn-tests", "gltf", "faer", "clap", "rayon", "image", "serde_json", "naga", "wgpu-core"]
+        ["ctsn-rig", "ctsn-tests", "gltf", "faer", "clap", "rayon", "image", "serde_json", "naga", "wgpu-core"]
     {
         assert!(!packages.contains(&package), "ctsn-wasm depends on {package}");
     }

@@ -1,17 +1,19 @@
-//! How far a pose leaves the poses seen in training, and what the network's residuals are worth there: all of it among them, nothing far
-//! away, where the cloth is skinned plainly. The paper (§ Limitations) leaves such poses open.
+//! How far a pose lies outside the poses seen in training, and how much the network's residuals count there: in full
+//! among the seen poses, not at all far away, where the cloth is skinned plainly. The paper (§ Limitations) leaves this
+//! open.
 
-use crate::model::{HostModel, Skin};
+use crate::model::{HostModel, Skinning};
 use crate::pose::{BodyFrame, Range, Rig};
 use glam::{Vec3, Vec4};
 
-/// Excess up to which the residuals count in full, and from which on they count for nothing, in units of the garment's size.
-/// Between the two the cloth goes over from folds to plain skinning without a jump. By measurement on a T-shirt: unseen clips stay below
-/// 0.05; single joints turned further and further stretch the network's cloth more than plain skinning does from 0.3 to 0.4 on.
+/// Up to the excess TRUST the residuals count in full, from DOUBT on they count for nothing; in units of the garment's
+/// size. Between the two, the cloth goes over from folds to plain skinning without a jump. Measured on a T-shirt: in
+/// unseen clips the excess stays below 0.05; when single joints are turned further and further, the network's cloth is
+/// stretched more than plainly skinned cloth from 0.3 to 0.4 on.
 const TRUST: f32 = 0.1;
 const DOUBT: f32 = 0.5;
 
-/// What a pose's confidence is reckoned from.
+/// What the confidence in a pose is computed from.
 #[derive(Clone, Debug)]
 pub struct Confidence {
     range: Range,
@@ -37,10 +39,10 @@ impl Confidence {
     pub fn new(model: &HostModel) -> Option<Self> {
         let range = model.rig.range.clone()?;
         let joints = model.sizes.joints;
-        // What the cloth may touch tells more than what lies under it: an obstacle carries no cloth.
+        // The body that cloth may touch, not what lies under the cloth: an obstacle carries no cloth.
         let levers = match &model.body {
-            Some(body) => levers(&body.rest, &body.skin, joints),
-            None => levers(&model.reference.rest, &model.reference.skin, joints),
+            Some(body) => levers(&body.rest, &body.skinning, joints),
+            None => levers(&model.reference.rest, &model.reference.skinning, joints),
         };
         let points = || model.rest.as_chunks::<3>().0.iter().map(|point| Vec3::from_array(*point));
         let count = points().count() as f32;
@@ -51,7 +53,7 @@ impl Confidence {
 
     /// Joint world transforms [J, 3, 4] -> 1 among the poses seen, 0 far from them.
     pub fn of(&mut self, rig: &Rig, joints: &[f32]) -> f32 {
-        crate::cpu::body_frame::body_frame(rig, joints, &mut self.frame.transforms, &mut self.frame.vector);
+        crate::cpu::network::body_frame::body_frame(rig, joints, &mut self.frame.transforms, &mut self.frame.vector);
         let excess = self.levers.iter().map(|lever| lever.share * self.excess(lever)).sum::<f32>().sqrt();
         1.0 - smoothstep((excess / self.size - TRUST) / (DOUBT - TRUST))
     }
@@ -69,10 +71,10 @@ impl Confidence {
 }
 
 /// What each joint carries of the points [n, 3].
-fn levers(points: &[f32], skin: &Skin<Vec<f32>, Vec<u32>>, joints: usize) -> Vec<Lever> {
+fn levers(points: &[f32], skinning: &Skinning<Vec<f32>, Vec<u32>>, joints: usize) -> Vec<Lever> {
     let mut levers: Vec<Lever> = (0..joints).map(|joint| Lever { joint, ..Lever::default() }).collect();
-    let total: f32 = skin.weights.iter().sum();
-    let rows = skin.joints.chunks_exact(skin.width).zip(skin.weights.chunks_exact(skin.width));
+    let total: f32 = skinning.weights.iter().sum();
+    let rows = skinning.joints.chunks_exact(skinning.width).zip(skinning.weights.chunks_exact(skinning.width));
     for (point, (joints, weights)) in points.as_chunks::<3>().0.iter().zip(rows) {
         for (joint, weight) in joints.iter().zip(weights) {
             let lever = &mut levers[*joint as usize];
@@ -85,7 +87,7 @@ fn levers(points: &[f32], skin: &Skin<Vec<f32>, Vec<u32>>, joints: usize) -> Vec
     levers
 }
 
-/// 0 up to 0, 1 from 1 on, smooth between; 1 for what is no number.
+/// 0 below 0, 1 above 1, smooth between; 1 for NaN.
 fn smoothstep(x: f32) -> f32 {
     let x = if x.is_nan() { 1.0 } else { x.clamp(0.0, 1.0) };
     x * x * (3.0 - 2.0 * x)

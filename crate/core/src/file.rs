@@ -1,5 +1,6 @@
 //! Bytes <-> named tensors in the safetensors format. Knows no model.
-//! The `safetensors` crate brings serde_json and 39 kB of brotli to the browser (measured); the header is small, so it is read here.
+//! The `safetensors` crate brings serde_json and 39 kB of brotli to the browser (measured); the header is small, so it
+//! is read here.
 
 use crate::{Error, Result};
 use half::f16;

@@ -1,6 +1,12 @@
 //! ctsn-core: the two-stream network of the paper CTSN, from model file and pose to cloth. No I/O, no platform code.
 //!
-//! `Model` (weights) + `BodyFrame` (pose) -> `network::forward` over a `Device` -> positions. `Predictor` ties them for the CPU.
+//! `Model` (weights) + `BodyFrame` (pose) -> `network::forward` over a `Device` -> positions. `Predictor` ties them for
+//! the CPU.
+
+#![forbid(unsafe_code)]
+
+#[macro_use]
+pub mod operation;
 
 mod confidence;
 pub mod cpu;
@@ -11,6 +17,8 @@ pub mod model;
 pub mod network;
 pub mod pose;
 mod predictor;
+#[cfg(feature = "suite")]
+pub mod suite;
 pub mod topology;
 
 pub use confidence::Confidence;

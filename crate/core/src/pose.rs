@@ -1,6 +1,6 @@
 //! A skeleton as the network needs it, and the checks a pose must pass. network.md §1.
 
-use crate::cpu::body_frame::body_frame;
+use crate::cpu::network::body_frame::body_frame;
 use crate::{Error, Result};
 use glam::{Mat3, Vec3};
 
@@ -35,9 +35,9 @@ pub struct Rig {
     pub range: Option<Range>,
 }
 
-/// The poses seen in training: least and greatest numbers of the transforms `N·A_j`, by rows of the linear part and the joint's own
-/// position. Beyond them the pose vector is clamped. (A transform's translation is where it carries the origin, which may be far from
-/// the joint: clamped apart from the rotation it tore the joint away.)
+/// The poses seen in training: least and greatest numbers of the transforms `N·A_j`, by rows of the linear part and the
+/// joint's own position. Beyond them the pose vector is clamped. (A transform's translation is where it carries the
+/// origin, which may be far from the joint: clamped apart from the rotation it tore the joint away.)
 #[derive(Clone, Debug, PartialEq)]
 pub struct Range {
     /// Least [J, 3, 4].

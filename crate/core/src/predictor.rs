@@ -2,9 +2,8 @@
 
 use crate::confidence::Confidence;
 use crate::cpu::{Cpu, Level};
-use crate::device::Device;
 use crate::model::{HostModel, Sizes, Surface};
-use crate::network::{Activations, Streams, frame};
+use crate::network::{Activations, Streams, predict};
 use crate::pose::{Rig, Transform};
 use crate::{Error, Result};
 use std::sync::Arc;
@@ -25,8 +24,8 @@ impl Predictor {
 
     /// A model at a chosen SIMD level.
     pub fn from_model(model: HostModel, level: Level) -> Self {
-        let mut device = Cpu::with_level(level);
-        let mut activations = Activations::new(&model, |_, length| device.buffer(&vec![0.0; length]));
+        let device = Cpu::with_level(level);
+        let mut activations = Activations::new(&model, |_, length| vec![0.0; length]);
         activations.confidence[0] = 1.0;
         let confidence = Confidence::new(&model);
         Self { device, model: Arc::new(model), activations, confidence }
@@ -90,7 +89,7 @@ impl Predictor {
         if let Some(confidence) = &mut self.confidence {
             a.confidence[0] = confidence.of(&self.model.rig, &a.joints);
         }
-        frame(&mut self.device, &self.model, streams, a);
+        predict(&mut self.device, &self.model, streams, a);
         match a.positions.iter().position(|value| !value.is_finite()) {
             Some(element) => {
                 Err(Error::NotFinite { what: "positions".to_owned(), element, found: a.positions[element] })
@@ -99,8 +98,8 @@ impl Predictor {
         }
     }
 
-    /// What the residuals were worth in the last pose: 1 among the poses seen in training, 0 far from them, where the cloth is skinned
-    /// plainly; always 1 where the model does not say what it has seen.
+    /// What the residuals were worth in the last pose: 1 among the poses seen in training, 0 far from them, where the
+    /// cloth is skinned plainly; always 1 where the model does not say what it has seen.
     pub fn confidence(&self) -> f32 {
         self.activations.confidence[0]
     }

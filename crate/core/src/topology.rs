@@ -1,7 +1,10 @@
 //! Triangles -> neighbour lists. network.md §3: the edges of the cloth triangles, both directions, no self loops.
 
-/// Neighbour lists of `n` vertices in compressed rows: vertex `i` has `neighbours[offsets[i]..offsets[i + 1]]`, ascending.
-#[derive(Clone, Debug, PartialEq, Eq)]
+use std::ops::Deref;
+
+/// Neighbour lists of `n` vertices in compressed rows: vertex `i` has `neighbours[offsets[i]..offsets[i + 1]]`,
+/// ascending.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Graph<I> {
     /// Row starts, n + 1.
     pub offsets: I,
@@ -27,7 +30,9 @@ impl Graph<Vec<u32>> {
         (0..n).for_each(|i| offsets[i + 1] += offsets[i]);
         Self { offsets, neighbours: edges.into_iter().map(|edge| edge.1).collect() }
     }
+}
 
+impl<I: Deref<Target = [u32]>> Graph<I> {
     /// Neighbours of vertex `i`.
     pub fn of(&self, i: usize) -> &[u32] {
         &self.neighbours[self.offsets[i] as usize..self.offsets[i + 1] as usize]

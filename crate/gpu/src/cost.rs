@@ -1,4 +1,5 @@
-//! The stages of a frame and what each must do at least: floating-point operations, and bytes when every operand is moved once.
+//! The stages of a frame and what each must do at least: floating-point operations, and bytes when every operand is
+//! moved once.
 
 use crate::recording::Dispatch;
 

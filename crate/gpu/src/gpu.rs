@@ -58,8 +58,8 @@ impl Gpu {
         Self::request(&instance, true).await
     }
 
-    /// The device that `instance` hands out, lent: it is never destroyed by us. For a page whose adapter resolves to the
-    /// page's own `GPUDevice`.
+    /// The device that `instance` hands out, lent: it is never destroyed by us. For a page whose adapter resolves to
+    /// the page's own `GPUDevice`.
     ///
     /// # Errors
     /// [`Error::NoAdapter`], [`Error::NoDevice`].
@@ -67,7 +67,8 @@ impl Gpu {
         Self::request(instance, false).await
     }
 
-    /// A lent device. Who lends it hears of its loss and of its errors; this crate sets no handlers and never destroys it.
+    /// A lent device. Who lends it hears of its loss and of its errors; this crate sets no handlers and never destroys
+    /// it.
     pub fn from_device(device: wgpu::Device, queue: wgpu::Queue) -> Self {
         Self::wrap(device, queue, false)
     }

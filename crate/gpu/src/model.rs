@@ -5,7 +5,7 @@ use crate::recorder::Recorder;
 use crate::recording::{Dispatch, Room};
 use crate::{Gpu, Result};
 use ctsn_core::model::{HostModel, Sizes};
-use ctsn_core::network::{Activations, frame};
+use ctsn_core::network::{Activations, predict};
 use ctsn_core::pose::Rig;
 use ctsn_core::{Confidence, Streams};
 use std::cell::RefCell;
@@ -18,7 +18,7 @@ pub struct Model(pub(crate) Arc<Inner>);
 pub(crate) struct Inner {
     pub gpu: Gpu,
     pub sizes: Sizes,
-    pub rig: Rig,
+    pub rig: Arc<Rig>,
     /// What each predictor reckons its poses' confidence with.
     pub trust: Option<Confidence>,
     pub constants: Vec<wgpu::Buffer>,
@@ -73,7 +73,7 @@ fn record(gpu: &Gpu, model: &HostModel) -> Result<Model> {
     let mut recorder = recorder.into_inner();
     let mut a = Activations::new(model, |stage, length| recorder.activation(stage, length));
     let mut one = |streams| {
-        frame(&mut recorder, &recorded, streams, &mut a);
+        predict(&mut recorder, &recorded, streams, &mut a);
         recorder.take()
     };
     let frames = [one(Streams::Both)?, one(Streams::Skeleton)?, one(Streams::None)?];
@@ -86,7 +86,7 @@ fn record(gpu: &Gpu, model: &HostModel) -> Result<Model> {
     let drawn = a.drawn.as_ref().map_or([positions, normals], |drawn| [room(drawn.positions), room(drawn.normals)]);
     let results = a.stages().into_iter().filter_map(|(name, id)| Some((name, recorder.room(*id)?))).collect();
     let Recorder { constants, rooms, .. } = recorder;
-    let (gpu, sizes, rig, trust) = (gpu.clone(), model.sizes, model.rig.clone(), Confidence::new(model));
+    let (gpu, sizes, rig, trust) = (gpu.clone(), model.sizes, Arc::clone(&model.rig), Confidence::new(model));
     Ok(Model(Arc::new(Inner {
         gpu,
         sizes,

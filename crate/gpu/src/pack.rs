@@ -1,4 +1,5 @@
-//! Constants as the shaders read them: rows padded with zeros to whole vec4, and what neighbouring invocations read side by side.
+//! Constants as the shaders read them: rows padded with zeros to whole vec4, and what neighbouring invocations read
+//! side by side.
 
 use ctsn_core::pose::{Range, Rig};
 
@@ -7,12 +8,19 @@ pub fn whole(numbers: usize) -> usize {
     numbers.next_multiple_of(4)
 }
 
-/// [rows, columns] -> [rows, columns padded], then rows of zeros up to `count` in all.
-pub fn rows(values: &[f32], columns: usize, count: usize) -> Vec<f32> {
-    let mut packed = vec![0.0; count * whole(columns)];
-    for (row, packed) in values.chunks_exact(columns).zip(packed.chunks_exact_mut(whole(columns))) {
+/// Rows of `columns` numbers -> the same `stride` numbers apart, zeros between them.
+pub fn strided(values: &[f32], columns: usize, stride: usize) -> Vec<f32> {
+    let mut packed = vec![0.0; values.len() / columns * stride];
+    for (row, packed) in values.chunks_exact(columns).zip(packed.chunks_exact_mut(stride)) {
         packed[..columns].copy_from_slice(row);
     }
+    packed
+}
+
+/// [rows, columns] -> [rows, columns padded], then rows of zeros up to `count` in all.
+pub fn rows(values: &[f32], columns: usize, count: usize) -> Vec<f32> {
+    let mut packed = strided(values, columns, whole(columns));
+    packed.resize(count * whole(columns), 0.0);
     packed
 }
 
@@ -33,8 +41,8 @@ pub fn slots<T: Copy>(values: &[T], width: usize) -> Vec<T> {
     (0..width).flat_map(|slot| values.iter().skip(slot).step_by(width).copied()).collect()
 }
 
-/// `W_eᵀ` [6, F], gate [3F], norm weight and bias [F] -> three vec4 per feature: W_e of V and norm weight; W_e of T_C and
-/// norm bias; the gate's three.
+/// `W_eᵀ` [6, F], gate [3F], norm weight and bias [F] -> three vec4 per feature: W_e of V and norm weight; W_e of T_C
+/// and norm bias; the gate's three.
 pub fn layer(edge: &[f32], gate: &[f32], norm_weight: &[f32], norm_bias: &[f32]) -> Vec<f32> {
     let features = norm_weight.len();
     let feature = |f: usize| {
@@ -58,7 +66,8 @@ pub fn layer(edge: &[f32], gate: &[f32], norm_weight: &[f32], norm_bias: &[f32])
     (0..features).flat_map(feature).collect()
 }
 
-/// Mean of the pose vector, its standard deviation, then the range: bounds, and where the joints are. Boundless for a rig without.
+/// Mean of the pose vector, its standard deviation, then the range: bounds, and where the joints are. Boundless for a
+/// rig without.
 pub fn standard(rig: &Rig) -> Vec<f32> {
     let boundless = || {
         let bound = |bound| vec![bound; rig.mean.len()];
@@ -69,7 +78,8 @@ pub fn standard(rig: &Rig) -> Vec<f32> {
     [rig.mean.clone(), rig.std.clone(), min, max, origins].concat()
 }
 
-/// Triangles [t, 3] -> first corner of each of `n` vertices [n + 1], and the corners of the triangles around it, in their order.
+/// Triangles [t, 3] -> first corner of each of `n` vertices [n + 1], and the corners of the triangles around it, in
+/// their order.
 pub fn corners(n: usize, triangles: &[u32]) -> (Vec<u32>, Vec<u32>) {
     let mut around = vec![Vec::new(); n];
     for triangle in triangles.as_chunks::<3>().0 {

@@ -2,7 +2,7 @@
 
 use crate::model::Model;
 use crate::read::Reader;
-use crate::recording::{Dispatch, Operand};
+use crate::recording::{Dispatch, Operand, Room};
 use crate::{Error, Gpu, Result};
 use ctsn_core::{Confidence, Streams};
 use wgpu::BufferUsages as Usage;
@@ -54,20 +54,8 @@ impl Predictor {
 
     fn make(model: &Model) -> Self {
         let (gpu, inner) = (model.gpu(), &model.0);
-        let buffer = |(i, room): (usize, &crate::recording::Room)| {
-            let shown = if [inner.positions, inner.normals].contains(&i) || inner.drawn.contains(&i) {
-                Usage::VERTEX
-            } else {
-                Usage::empty()
-            };
-            gpu.device().create_buffer(&wgpu::BufferDescriptor {
-                label: Some(&room.stage),
-                size: (room.rows * room.stride * 4) as u64,
-                usage: Usage::STORAGE | Usage::COPY_SRC | Usage::COPY_DST | shown,
-                mapped_at_creation: false,
-            })
-        };
-        let buffers: Vec<_> = inner.rooms.iter().enumerate().map(buffer).collect();
+        let shown = |room| [inner.positions, inner.normals].contains(&room) || inner.drawn.contains(&room);
+        let buffers = buffers(gpu, &inner.rooms, shown);
         let step = |dispatch: &Dispatch| Step::new(gpu, dispatch, &inner.constants, &buffers);
         let frames = [0, 1, 2].map(|streams| inner.frames[streams].iter().map(step).collect());
         let pose = vec![0.0; 12 * inner.sizes.joints];
@@ -147,7 +135,8 @@ impl Predictor {
         &self.buffers[self.model.0.normals]
     }
 
-    /// Positions of the drawn vertices [d, 3], not padded: of the surface where the model has one, of the cloth otherwise.
+    /// Positions of the drawn vertices [d, 3], not padded: of the surface where the model has one, of the cloth
+    /// otherwise.
     pub fn drawn_positions(&self) -> &wgpu::Buffer {
         &self.buffers[self.model.0.drawn[0]]
     }
@@ -157,8 +146,8 @@ impl Predictor {
         &self.buffers[self.model.0.drawn[1]]
     }
 
-    /// Reads back the last prediction submitted before this call. The future borrows nothing: further frames may follow, and
-    /// further reads. Natively it waits for the GPU when first polled.
+    /// Reads back the last prediction submitted before this call. The future borrows nothing: further frames may
+    /// follow, and further reads. Natively it waits for the GPU when first polled.
     ///
     /// # Errors
     /// [`Error::Lost`]; a prediction that is not finite.
@@ -200,9 +189,7 @@ impl Predictor {
         let read = self.reader.read(self.model.gpu(), &buffers);
         async move {
             let unpad = |((name, room), values): (&(String, usize), Vec<f32>)| {
-                let room = &inner.rooms[*room];
-                let rows = values.chunks_exact(room.stride).flat_map(|row| row[..room.columns].iter().copied());
-                (name.clone(), rows.collect())
+                (name.clone(), inner.rooms[*room].unpad(&values))
             };
             Ok(inner.results.iter().zip(read.await?).map(unpad).collect())
         }
@@ -210,7 +197,7 @@ impl Predictor {
 }
 
 impl Step {
-    fn new(gpu: &Gpu, dispatch: &Dispatch, constants: &[wgpu::Buffer], activations: &[wgpu::Buffer]) -> Self {
+    pub fn new(gpu: &Gpu, dispatch: &Dispatch, constants: &[wgpu::Buffer], activations: &[wgpu::Buffer]) -> Self {
         let pipeline = gpu.pipeline(dispatch.shader, dispatch.room);
         let operand = |operand: &Operand| match operand {
             Operand::Constant(constant) => &constants[*constant],
@@ -233,6 +220,20 @@ impl Step {
         pass.set_bind_group(0, &self.bindings, &[]);
         pass.dispatch_workgroups(self.groups[0], self.groups[1], 1);
     }
+}
+
+/// A buffer for each intermediate result; those that are `shown` may be drawn from.
+pub(crate) fn buffers(gpu: &Gpu, rooms: &[Room], shown: impl Fn(usize) -> bool) -> Vec<wgpu::Buffer> {
+    let buffer = |(i, room): (usize, &Room)| {
+        let shown = if shown(i) { Usage::VERTEX } else { Usage::empty() };
+        gpu.device().create_buffer(&wgpu::BufferDescriptor {
+            label: Some(&room.stage),
+            size: (room.rows * room.stride * 4) as u64,
+            usage: Usage::STORAGE | Usage::COPY_SRC | Usage::COPY_DST | shown,
+            mapped_at_creation: false,
+        })
+    };
+    rooms.iter().enumerate().map(buffer).collect()
 }
 
 /// A joint that stands at the origin.

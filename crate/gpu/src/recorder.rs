@@ -1,11 +1,16 @@
 //! The device that records: every operation of the forward pass becomes one dispatch. Runs once, at load.
 
-mod operations;
+mod network;
+mod repair;
 
 use crate::cost::Cost;
+use crate::pack;
 use crate::recording::{Dispatch, Operand, Room};
 use crate::{Error, Gpu, Result};
 use bytemuck::Pod;
+use ctsn_core::device::Device;
+use ctsn_core::each;
+use ctsn_core::operation::Operation;
 use ctsn_shaders::Shader;
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -36,13 +41,42 @@ pub(crate) struct Recorder<'m> {
     pub constants: Vec<wgpu::Buffer>,
     pub rooms: Vec<Room>,
     dispatches: Vec<Dispatch>,
+    /// Arithmetic of the operation that is being recorded.
+    flops: usize,
     failure: Option<Error>,
+}
+
+/// An operation as the recorder notes it.
+trait Record {
+    fn record(self, recorder: &mut Recorder);
+}
+
+impl Device for Recorder<'_> {
+    type Buffer = Id;
+    type Indices = IndexId;
+
+    fn run(&mut self, operation: Operation<&Id, &mut Id, &IndexId>) {
+        let operation = operation.map(|id| *id, |id| *id, |id| *id);
+        let lengths = operation.clone().map(|id| self.length(id), |id| self.length(id), |id| self.indices(id).len());
+        self.flops = lengths.flops();
+        each!(operation, operation => operation.record(self));
+    }
 }
 
 impl<'m> Recorder<'m> {
     pub fn new(gpu: &'m Gpu) -> Self {
         let (slots, indices, packed) = (Vec::new(), Vec::new(), HashMap::new());
-        Self { gpu, slots, indices, packed, constants: vec![], rooms: vec![], dispatches: vec![], failure: None }
+        Self {
+            gpu,
+            slots,
+            indices,
+            packed,
+            constants: vec![],
+            rooms: vec![],
+            dispatches: vec![],
+            flops: 0,
+            failure: None,
+        }
     }
 
     /// A constant of the model, borrowed until the recording ends.
@@ -84,6 +118,11 @@ impl<'m> Recorder<'m> {
             Slot::Constant(values) => values,
             Slot::Activation { .. } => &[],
         }
+    }
+
+    /// Constant indices.
+    fn indices(&self, id: IndexId) -> &[u32] {
+        &self.indices[id.0]
     }
 
     fn length(&self, id: Id) -> usize {
@@ -132,14 +171,16 @@ impl<'m> Recorder<'m> {
         self.failure.get_or_insert(Error::Limit { what, wanted, allowed });
     }
 
-    /// Lays out an intermediate result as rows, padded to `stride` numbers.
-    fn output(&mut self, id: Id, columns: usize, stride: usize) -> Operand {
+    /// An operand as rows of `columns` numbers, `stride` numbers apart: a constant, or an intermediate result, which
+    /// all operations that name it lay out alike.
+    fn rows(&mut self, id: Id, columns: usize, stride: usize) -> Operand {
         let rows = self.length(id) / columns;
         let count = self.rooms.len();
         let Slot::Activation { stage, room, .. } = &mut self.slots[id.0] else {
-            unreachable!("an operation writes activations only")
+            return self.pack(("rows", id.0), |it| pack::strided(it.values(id), columns, stride));
         };
         if let Some(room) = *room {
+            debug_assert_eq!((self.rooms[room].columns, self.rooms[room].stride), (columns, stride), "{stage}");
             return Operand::Activation(room);
         }
         *room = Some(count);
@@ -149,14 +190,9 @@ impl<'m> Recorder<'m> {
         Operand::Activation(count)
     }
 
-    /// [n, 3], not padded: an intermediate result, or a constant of the model.
-    fn plain(&mut self, id: Id) -> Operand {
-        self.room(id).map_or_else(|| self.pack(("rest", id.0), |this| this.values(id).to_vec()), Operand::Activation)
-    }
-
-    /// An intermediate result that an earlier operation wrote.
-    fn input(&self, id: Id) -> Operand {
-        Operand::Activation(self.room(id).unwrap_or_else(|| unreachable!("an operation reads what was written")))
+    /// Constant indices as they are.
+    fn indexed(&mut self, id: IndexId) -> Operand {
+        self.pack(("indices", id.0), |it| it.indices(id).to_vec())
     }
 
     /// Workgroup memory for so many features in the last dispatch.
@@ -174,7 +210,6 @@ impl<'m> Recorder<'m> {
         operands: &[Operand],
         extent: [usize; 2],
         of: Id,
-        flops: usize,
     ) {
         let limit = u64::from(self.gpu.device().limits().max_compute_workgroups_per_dimension);
         let groups = [0, 1].map(|axis| (extent[axis] as u64).div_ceil(u64::from(shader.tile[axis])));
@@ -186,11 +221,12 @@ impl<'m> Recorder<'m> {
             Operand::Constant(constant) => self.constants[*constant].size() as f64,
             Operand::Activation(room) => (self.rooms[*room].rows * self.rooms[*room].stride * 4) as f64,
         };
-        let cost = Cost { flops: flops as f64, bytes: operands.iter().map(bytes).sum() };
-        let Slot::Activation { stage, .. } = &self.slots[of.0] else {
-            unreachable!("an operation writes activations only")
+        let cost = Cost { flops: self.flops as f64, bytes: operands.iter().map(bytes).sum() };
+        let stage = match &self.slots[of.0] {
+            Slot::Activation { stage, .. } => stage.clone(),
+            Slot::Constant(_) => String::new(),
         };
-        let (stage, groups, operands) = (stage.clone(), groups.map(|groups| groups as u32), operands.to_vec());
+        let (groups, operands) = (groups.map(|groups| groups as u32), operands.to_vec());
         self.dispatches.push(Dispatch { shader, stage, params, room: None, operands, groups, cost });
     }
 }

@@ -22,6 +22,13 @@ pub(crate) struct Room {
     pub stride: usize,
 }
 
+impl Room {
+    /// What a buffer of this layout holds, without padding.
+    pub fn unpad(&self, values: &[f32]) -> Vec<f32> {
+        values.chunks_exact(self.stride).flat_map(|row| row[..self.columns].iter().copied()).collect()
+    }
+}
+
 /// One dispatch.
 pub(crate) struct Dispatch {
     pub shader: &'static Shader,

@@ -5,8 +5,8 @@ use crate::{Error, Predictor, Result};
 use ctsn_core::Streams;
 
 impl Predictor {
-    /// Runs the last pose once more, each dispatch in a pass of its own, and times the stages: milliseconds each, in the order of
-    /// [`crate::Model::stages`]. Slower than a frame, whose dispatches share one pass.
+    /// Runs the last pose once more, each dispatch in a pass of its own, and times the stages: milliseconds each, in
+    /// the order of [`crate::Model::stages`]. Slower than a frame, whose dispatches share one pass.
     ///
     /// # Errors
     /// [`Error::Missing`] without timestamps; [`Error::Lost`].

@@ -1,12 +1,12 @@
-//! The GPU device's part of the door. What takes time is a promise that borrows nothing, so that JavaScript may call and
-//! free meanwhile.
+//! The GPU's part of the boundary. What takes time is a promise that borrows nothing, so that JavaScript may call and
+//! free these objects meanwhile.
 
 use crate::{Predictor, Streams, to_js};
 use js_sys::futures::future_to_promise;
 use js_sys::{Array, Float32Array, Promise};
 use wasm_bindgen::prelude::*;
 
-/// The promise of what `work` comes to; its rejection is a JavaScript `Error` whose `name` is a stable code.
+/// A promise of the outcome of `work`. It rejects with a JavaScript `Error` whose `name` is a stable code.
 fn promise<T: Into<JsValue>>(work: impl Future<Output = ctsn_gpu::Result<T>> + 'static) -> Promise {
     future_to_promise(async move { work.await.map(Into::into).map_err(|error| to_js(&error).into()) })
 }
@@ -17,7 +17,7 @@ pub struct Gpu(ctsn_gpu::Gpu);
 
 #[wasm_bindgen]
 impl Gpu {
-    /// The device that `navigator.gpu` of this very moment hands out, lent: wgpu reads that property here and never again.
+    /// Borrows the device that `navigator.gpu` hands out during this very call: wgpu reads that property only here.
     #[wasm_bindgen(unchecked_return_type = "Promise<Gpu>")]
     pub fn adopt() -> Promise {
         let instance = ctsn_gpu::wgpu::Instance::new(ctsn_gpu::wgpu::InstanceDescriptor::new_without_display_handle());
@@ -52,14 +52,14 @@ pub struct GpuPredictor(ctsn_gpu::Predictor);
 
 #[wasm_bindgen]
 impl GpuPredictor {
-    /// Submits the prediction for the pose at `cpu.pose_address()`, where `cpu` is the same model's; false if that failed,
-    /// and then `cpu.take_failure()` says why.
+    /// Submits the prediction for the pose at `cpu.pose_address()`, where `cpu` is of the same model. False if that
+    /// failed: then `cpu.take_failure()` says why.
     pub fn predict(&mut self, cpu: &mut Predictor, streams: Streams) -> bool {
         cpu.failure = self.0.predict(&cpu.pose, streams.into()).err();
         cpu.failure.is_none()
     }
 
-    /// As [`Predictor::confidence`], of the pose last submitted.
+    /// [`Predictor::confidence`] of the pose last submitted.
     pub fn confidence(&self) -> f32 {
         self.0.confidence()
     }
@@ -75,8 +75,8 @@ impl GpuPredictor {
         })
     }
 
-    /// Predicted positions by buffer: of the cloth vertices [3·n] and of the drawn ones [3·d], world, metres, tightly packed,
-    /// fit to be vertex or storage buffers; then their unit normals likewise.
+    /// Four buffers: positions of the cloth vertices [3·n] and of the drawn vertices [3·d], world, metres; then their
+    /// unit normals likewise. Tightly packed, to be used as vertex or storage buffers.
     #[wasm_bindgen(unchecked_return_type = "[GPUBuffer, GPUBuffer, GPUBuffer, GPUBuffer]")]
     pub fn buffers(&self) -> Array {
         let buffers = [self.0.positions(), self.0.drawn_positions(), self.0.normals(), self.0.drawn_normals()];

@@ -1,6 +1,6 @@
-//! The browser's door: hands `ctsn_core::Predictor`, and in `gpu.rs` that of `ctsn_gpu`, to JavaScript. No arithmetic here;
-//! its twin on the other side of the wall is `web/src/raw.ts`, the one file that imports what wasm-bindgen makes of this.
-// Elsewhere there is no browser to be the door of.
+//! The boundary to JavaScript: `ctsn_core::Predictor` here, that of `ctsn_gpu` in `gpu.rs`. No arithmetic. The other
+//! side of it is `web/src/raw.ts`, the one file that imports the glue which wasm-bindgen generates.
+// On other targets there is no JavaScript.
 #![cfg(target_arch = "wasm32")]
 
 mod gpu;
@@ -37,13 +37,13 @@ fn to_js(error: &Error) -> js_sys::Error {
     js
 }
 
-/// Reports a panic, which would be a fault of ours, on the console with its place in the source.
+/// Has a panic, which would be a fault of ours, reported on the console with its place in the source.
 #[wasm_bindgen(start)]
 pub fn start() {
     console_error_panic_hook::set_once();
 }
 
-/// One model with its buffers. JavaScript reaches the large ones by address, so that a frame copies nothing.
+/// One model with its buffers. JavaScript reaches the large ones by address, so that a prediction copies nothing.
 #[wasm_bindgen]
 pub struct Predictor {
     inner: ctsn_core::Predictor,
@@ -84,7 +84,7 @@ impl Predictor {
         self.inner.triangles().to_vec()
     }
 
-    /// Drawn vertex -> cloth vertex [d]; nothing when the file holds no drawn surface.
+    /// Drawn vertex -> cloth vertex [d]; nothing if the file holds no surface to draw.
     pub fn surface_vertex(&self) -> Option<Vec<u32>> {
         self.inner.surface().map(|surface| surface.vertex.clone())
     }
@@ -104,7 +104,8 @@ impl Predictor {
         self.inner.positions().len() / 3
     }
 
-    /// Address of the joint world matrices [16·J], column-major, metres: written by the caller before [`Self::predict`].
+    /// Address of the joint world matrices [16·J], column-major, metres. The caller writes them before
+    /// [`Self::predict`].
     pub fn pose_address(&mut self) -> *mut f32 {
         self.pose.as_mut_ptr()
     }
@@ -119,14 +120,14 @@ impl Predictor {
         self.inner.normals().as_ptr()
     }
 
-    /// Predicts from the pose at [`Self::pose_address`]; false if that failed, and then [`Self::take_failure`] says why.
-    /// Not a `Result`: wasm-bindgen returns one as a fresh array, and a frame allocates nothing.
+    /// Predicts from the pose at [`Self::pose_address`]. False if that failed: then [`Self::take_failure`] says why.
+    /// Not a `Result`: wasm-bindgen returns one as a fresh array, and a prediction shall allocate nothing.
     pub fn predict(&mut self, streams: Streams) -> bool {
         self.failure = self.inner.predict(&self.pose, streams.into()).err().map(Error::from);
         self.failure.is_none()
     }
 
-    /// What the network's residuals were worth in the last pose: 1 among the poses seen in training, 0 far from them.
+    /// How much of the network's folds the last prediction shows: 1 in poses like those of the training, 0 far away.
     pub fn confidence(&self) -> f32 {
         self.inner.confidence()
     }

@@ -1,4 +1,4 @@
-// What runs in the page of webgpu.test.ts; every function answers something that JSON can say.
+// What runs in the page of webgpu.test.ts. Every function answers what JSON can hold.
 import { Bone, Group, type Object3D } from 'three';
 import { ClothBuffers, loadModel, type BackendChoice, type ClothModel, type Frame } from 'ctsn';
 
@@ -24,7 +24,7 @@ export function difference(a: ArrayLike<number>, b: ArrayLike<number>): number {
   return largest;
 }
 
-/** A character of unrelated bones in a golden pose. */
+/** A character of unrelated bones in a pose [16·J]. */
 export function characterOf(joints: readonly string[], pose: ArrayLike<number>): Group {
   const character = new Group();
   joints.forEach((name, joint) => {
@@ -37,7 +37,7 @@ export function characterOf(joints: readonly string[], pose: ArrayLike<number>):
   return character;
 }
 
-export function strike(character: Object3D, pose: ArrayLike<number>): void {
+export function setPose(character: Object3D, pose: ArrayLike<number>): void {
   character.children.forEach((bone, joint) => bone.matrix.fromArray(pose, 16 * joint));
 }
 
@@ -63,15 +63,17 @@ export async function countedDevice(): Promise<{ device: GPUDevice; alive: Set<G
 export async function golden({ name, poses, positions }: Golden) {
   const model = await load(name);
   let [error, length] = [0, 0];
-  // All at once: answers do not get into each other's way.
-  const frames = await Promise.all(poses.map((pose) => model.predictCloth(Float32Array.from(pose))));
-  frames.forEach((frame, i) => {
-    error = Math.max(error, difference(frame.positions, positions[i]!));
-    for (let at = 0; at < frame.normals.length; at += 3) length = Math.max(length, Math.abs(Math.hypot(...frame.normals.subarray(at, at + 3)) - 1));
+  // All at once: answers shall not get mixed up.
+  const predictions = await Promise.all(poses.map((pose) => model.predictCloth(Float32Array.from(pose))));
+  predictions.forEach(({ positions: found, normals }, i) => {
+    error = Math.max(error, difference(found, positions[i]!));
+    for (let at = 0; at < normals.length; at += 3) {
+      length = Math.max(length, Math.abs(Math.hypot(...normals.subarray(at, at + 3)) - 1));
+    }
   });
   const { backend, adapter, fallback } = model;
   model.dispose();
-  return { error, length, backend, adapter, fallback, numbers: frames[0]!.positions.length };
+  return { error, length, backend, adapter, fallback, numbers: predictions[0]!.normals.length };
 }
 
 /** Streams, buffers of a further cloth, one prediction on the CPU, and what is refused. */
@@ -83,7 +85,8 @@ export async function answers({ poses }: Golden) {
   model.predictCloth(second, { output: 'gpu', buffers: further });
   const kept = own instanceof ClothBuffers && (await readBuffer(own.positions, own.device));
   const other = await readBuffer(further.positions, further.device);
-  const onCpu = (pose: Float32Array, streams: 'both' | 'none' = 'both') => model.predictCloth(pose, { backend: 'cpu', streams }).positions.slice();
+  const onCpu = (pose: Float32Array, streams: 'both' | 'none' = 'both') =>
+    model.predictCloth(pose, { backend: 'cpu', streams }).positions.slice();
   const none = (await model.predictCloth(first, { streams: 'none' })).positions;
   const refusal = (work: () => unknown) => {
     try {
@@ -136,8 +139,8 @@ export async function without({ poses }: Golden) {
   Object.defineProperty(navigator, 'gpu', { value: undefined, configurable: true });
   try {
     const model = await load('small');
-    const frame = model.predictCloth(Float32Array.from(poses[0]!));
-    return { backend: model.backend, fallback: model.fallback, atOnce: 'positions' in frame };
+    const answer = model.predictCloth(Float32Array.from(poses[0]!));
+    return { backend: model.backend, fallback: model.fallback, atOnce: 'positions' in answer };
   } finally {
     delete (navigator as { gpu?: unknown }).gpu;
   }
@@ -155,13 +158,14 @@ export async function rounds({ poses }: Golden, count: number) {
   for (let round = 0; round < count; round++) {
     const model = await loadModel(bytes, { backend: 'webgpu', device });
     if (model.backend !== 'webgpu') throw new Error(model.fallback);
-    const frame = await model.predictCloth(pose);
-    if (!(frame.positions[0]! < Infinity)) throw new Error('no prediction');
+    const { positions } = await model.predictCloth(pose);
+    if (!(positions[0]! < Infinity)) throw new Error('no prediction');
     most = Math.max(most, alive.size);
     const { buffer } = model.predictCloth(pose, { backend: 'cpu' }).positions;
     history.push({ buffers: 0, memory: buffer.byteLength });
-    // Half of them with a prediction on its way.
-    const late = round % 2 ? Promise.resolve(model.predictCloth(pose)).catch((error: { code: string }) => error.code) : undefined;
+    // Every second time with a prediction on its way.
+    const answer = round % 2 ? model.predictCloth(pose) : undefined;
+    const late = Promise.resolve(answer).catch((error: { code: string }) => error.code);
     model.dispose();
     await late;
     history.at(-1)!.buffers = alive.size;
@@ -173,31 +177,41 @@ export async function rounds({ poses }: Golden, count: number) {
   return { most, tenth: history[9]!, last: history.at(-1)!, works, errors };
 }
 
-/** An animation during which the device is destroyed; every frame must be the CPU's answer for its own pose. */
-export async function loss({ name, poses, positions }: Golden, lent: boolean) {
+/** An animation during which the device is destroyed. Every answer must be that for its own pose. */
+export async function lostDevice({ name, poses, positions }: Golden, lent: boolean) {
   const given = lent ? await (await navigator.gpu.requestAdapter())!.requestDevice() : undefined;
   const model = await load(name, 'webgpu', given);
   const device = model.device!;
   const events: string[] = [];
-  model.addEventListener('backend', () => events.push(model.backend));
-  const frames: { error: number; backend: string }[] = [];
+  const reasons: (string | undefined)[] = [];
+  model.addEventListener('backend', () => {
+    events.push(model.backend);
+    reasons.push(model.fallback);
+  });
+  const answers: { error: number; backend: string }[] = [];
   const pending: Promise<void>[] = [];
   for (let i = 0; i < 12; i++) {
     if (i === 6) device.destroy();
     const expected = positions[i % poses.length]!;
     const backend = model.backend;
-    pending.push(Promise.resolve(model.predictCloth(Float32Array.from(poses[i % poses.length]!)) as Frame | Promise<Frame>).then((frame) => {
-      frames.push({ error: difference(frame.positions, expected), backend });
-    }));
+    const answer = model.predictCloth(Float32Array.from(poses[i % poses.length]!)) as Frame | Promise<Frame>;
+    pending.push(
+      Promise.resolve(answer).then((found) => {
+        answers.push({ error: difference(found.positions, expected), backend });
+      }),
+    );
     await new Promise((resolve) => setTimeout(resolve, 20));
   }
   await Promise.all(pending);
-  const [afterLoss, reason] = [model.backend, model.fallback];
-  // A device of our own comes back by itself; one of the page when the page has another.
+  // Nobody replaces the page's device before the page does.
+  if (lent) events.push(`still ${model.backend}`);
+  // A device of our own is replaced by itself, one of the page by the page.
   if (lent) await model.setBackend('webgpu', await (await navigator.gpu.requestAdapter())!.requestDevice());
-  else for (let waited = 0; waited < 600 && model.backend === 'cpu'; waited++) await new Promise((resolve) => setTimeout(resolve, 100));
+  for (let waited = 0; waited < 600 && model.backend === 'cpu'; waited++) {
+    await new Promise((resolve) => setTimeout(resolve, 100));
+  }
   const again = await model.predictCloth(Float32Array.from(poses[0]!));
   const back = { backend: model.backend, fallback: model.fallback, error: difference(again.positions, positions[0]!) };
   model.dispose();
-  return { frames, events, afterLoss, reason, back };
+  return { answers, events, reasons, back };
 }

@@ -1,4 +1,4 @@
-// Pictures for webgpu.test.ts: a renderer of three's with its scene, and how far two pictures are apart.
+// Pictures for webgpu.test.ts: a renderer of three's with its scene, and how much two pictures differ.
 import * as THREE from 'three/webgpu';
 import { deviceOf, type Cloth } from 'ctsn/three';
 
@@ -12,7 +12,10 @@ export class Studio {
   readonly errors: string[] = [];
 
   readonly #sun = new THREE.DirectionalLight(0xffffff, 3);
-  readonly #floor = new THREE.Mesh(new THREE.PlaneGeometry(8, 8).rotateX(-Math.PI / 2), new THREE.MeshStandardNodeMaterial({ color: 0xbbbbbb }));
+  readonly #floor = new THREE.Mesh(
+    new THREE.PlaneGeometry(8, 8).rotateX(-Math.PI / 2),
+    new THREE.MeshStandardNodeMaterial({ color: 0xbbbbbb }),
+  );
 
   private constructor(readonly renderer: THREE.WebGPURenderer) {
     renderer.shadowMap.enabled = true;
@@ -34,13 +37,13 @@ export class Studio {
     const device = deviceOf(renderer);
     if (!device) throw new Error('three.js found no WebGPU adapter');
     device.addEventListener('uncapturederror', ({ error }) => studio.errors.push(error.message));
-    // The first frame of r170 is without shadows.
+    // r170 draws no shadows the first time.
     await studio.picture();
     return studio;
   }
 
-  /** Looks at a cloth drawn from arrays, from the front and above; its shadow falls to the right. */
-  frame(cloth: Cloth): void {
+  /** Looks from the front and above at a cloth that is drawn from arrays. Its shadow falls to the right. */
+  lookAt(cloth: Cloth): void {
     const { center, radius } = cloth.geometry.boundingSphere!.clone().applyMatrix4(cloth.matrixWorld);
     this.camera.position.set(center.x + 0.5 * radius, center.y + radius, center.z + 2.5 * radius);
     this.camera.lookAt(center);
@@ -51,7 +54,7 @@ export class Studio {
 
   /** The pixels of the scene, and the scene on the page. */
   async picture(): Promise<Uint8Array> {
-    // Shadows are drawn once a frame, and a frame is one of the page's.
+    // three draws shadows once per animation frame of the page.
     await new Promise(requestAnimationFrame);
     this.renderer.setRenderTarget(this.target);
     this.renderer.render(this.scene, this.camera);
@@ -68,10 +71,11 @@ export class Studio {
 }
 
 /** Share of the pixels that clearly differ. */
-export function apart(a: Uint8Array, b: Uint8Array): number {
+export function differing(a: Uint8Array, b: Uint8Array): number {
   if (a.length !== b.length || a.length < 4 * width * height) return 1;
   let count = 0;
-  for (let at = 0; at < a.length; at += 4) if ([0, 1, 2].some((channel) => Math.abs(a[at + channel]! - b[at + channel]!) > 8)) count++;
+  const differs = (at: number) => Math.abs(a[at]! - b[at]!) > 8;
+  for (let at = 0; at < a.length; at += 4) if (differs(at) || differs(at + 1) || differs(at + 2)) count++;
   return (4 * count) / a.length;
 }
 

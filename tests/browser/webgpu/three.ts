@@ -2,19 +2,25 @@
 import * as THREE from 'three/webgpu';
 import { Cloth, deviceOf } from 'ctsn/three';
 import { loadModel, type BackendChoice, type ClothBuffers } from 'ctsn';
-import { address, characterOf, difference, readBuffer, strike, type Golden } from './page.js';
-import { apart, show, Studio } from './studio.js';
+import { address, characterOf, difference, readBuffer, setPose, type Golden } from './page.js';
+import { differing, show, Studio } from './studio.js';
 
 async function dress(studio: Studio, { name, poses }: Golden, backend: BackendChoice, renderer?: THREE.WebGPURenderer) {
   const model = await loadModel(address(name), { backend, device: deviceOf(studio.renderer) });
   const character = characterOf(model.joints, poses[0]!);
-  const cloth = new Cloth(model, character, new THREE.MeshStandardNodeMaterial({ color: 0x3a86ff, side: THREE.DoubleSide }) as THREE.Material, renderer);
+  const material = new THREE.MeshStandardNodeMaterial({ color: 0x3a86ff, side: THREE.DoubleSide }) as THREE.Material;
+  const cloth = new Cloth(model, character, material, renderer);
   cloth.castShadow = cloth.receiveShadow = true;
   studio.scene.add(cloth);
   return { model, character, cloth };
 }
 
-/** Runs the cloth until it draws what it should: the first update asks for buffers, the next uses them. */
+/** What stands in the array of positions [3·d]. */
+function positionsOf(cloth: Cloth): Float32Array {
+  return cloth.geometry.getAttribute('position').array as Float32Array;
+}
+
+/** Updates the cloth until it shows its pose: the first update asks for buffers, the next predicts into them. */
 async function settle(cloth: Cloth): Promise<void> {
   cloth.update();
   await cloth.settled();
@@ -22,13 +28,14 @@ async function settle(cloth: Cloth): Promise<void> {
   await cloth.settled();
 }
 
-/** Moves every vertex in our buffer half a metre up, behind three's back: only who draws from it can tell. */
+/** Moves every vertex in our buffer half a metre up, which three does not notice unless it draws from that buffer. */
 async function lift(buffers: ClothBuffers): Promise<void> {
   const values = await readBuffer(buffers.drawnPositions, buffers.device);
-  buffers.device.queue.writeBuffer(buffers.drawnPositions, 0, values.map((value, i) => (i % 3 === 1 ? value + 0.5 : value)));
+  const lifted = values.map((value, i) => (i % 3 === 1 ? value + 0.5 : value));
+  buffers.device.queue.writeBuffer(buffers.drawnPositions, 0, lifted);
 }
 
-/** The garment in several poses from our buffer, from the CPU's arrays, and not at all. */
+/** The garment in several poses, drawn from our buffer, from the CPU's arrays, and not at all. */
 export async function drawn(golden: Golden) {
   const studio = await Studio.open();
   const device = deviceOf(studio.renderer)!;
@@ -38,10 +45,10 @@ export async function drawn(golden: Golden) {
   const pictures = [];
   let bounded = true;
   for (const pose of golden.poses) {
-    for (const { character } of [ours, theirs]) strike(character, pose);
+    for (const { character } of [ours, theirs]) setPose(character, pose);
     await settle(ours.cloth);
     theirs.cloth.update();
-    studio.frame(theirs.cloth);
+    studio.lookAt(theirs.cloth);
     ours.cloth.visible = true;
     theirs.cloth.visible = false;
     const fromBuffer = await studio.picture();
@@ -50,18 +57,21 @@ export async function drawn(golden: Golden) {
     theirs.cloth.visible = true;
     const fromArrays = await studio.picture();
     show(fromBuffer, fromArrays);
-    pictures.push({ difference: apart(fromBuffer, fromArrays), covered: apart(fromArrays, nothing) });
-    bounded &&= holds(ours.cloth.geometry.boundingSphere!, theirs.cloth.geometry.getAttribute('position').array as Float32Array);
+    pictures.push({ difference: differing(fromBuffer, fromArrays), covered: differing(fromArrays, nothing) });
+    bounded &&= holds(ours.cloth.geometry.boundingSphere!, positionsOf(theirs.cloth));
   }
   theirs.cloth.visible = false;
   ours.cloth.visible = true;
   const zeroCopy = ours.cloth.zeroCopy;
   const lit = await studio.picture();
   ours.cloth.castShadow = false;
-  const shadow = apart(lit, await studio.picture());
-  // The array three would have uploaded is not what was drawn.
-  const arrays = difference(ours.cloth.geometry.getAttribute('position').array as Float32Array, theirs.cloth.geometry.getAttribute('position').array as Float32Array);
-  const result = { before, zeroCopy, pictures, shadow, bounded, arrays, sameDevice: ours.model.device === device, errors: studio.errors };
+  const shadow = differing(lit, await studio.picture());
+  // The array that three would have uploaded is not what was drawn.
+  const arrays = difference(positionsOf(ours.cloth), positionsOf(theirs.cloth));
+  const sameDevice = ours.model.device === device;
+  const { errors } = studio;
+  const revision = THREE.REVISION;
+  const result = { before, zeroCopy, pictures, shadow, bounded, arrays, sameDevice, errors, revision };
   for (const { cloth, model } of [ours, theirs]) {
     cloth.dispose();
     model.dispose();
@@ -78,14 +88,14 @@ function holds({ center, radius }: THREE.Sphere, positions: Float32Array): boole
 }
 
 /**
- * What a test of zero copies must notice: vertices moved in our buffer move on the screen if three draws from it, and do not
- * if three has a copy; and a cloth without its buffer does not look like one.
+ * What the other tests must be able to notice. Vertices moved in our buffer move on the screen if three draws from it,
+ * and do not if three has a copy. A cloth whose positions are missing looks different.
  */
 export async function control(golden: Golden) {
   const studio = await Studio.open();
   const share = async (renderer?: THREE.WebGPURenderer) => {
     const { model, cloth } = await dress(studio, golden, 'webgpu', renderer);
-    studio.frame(cloth);
+    studio.lookAt(cloth);
     const buffers: ClothBuffers[] = [];
     const create = model.createBuffers.bind(model);
     model.createBuffers = async () => (buffers.push(await create()), buffers.at(-1)!);
@@ -96,7 +106,7 @@ export async function control(golden: Golden) {
     const lifted = await studio.picture();
     cloth.visible = false;
     const nothing = await studio.picture();
-    const answer = { zeroCopy: cloth.zeroCopy, moved: apart(seen, lifted), covered: apart(seen, nothing) };
+    const answer = { zeroCopy: cloth.zeroCopy, moved: differing(seen, lifted), covered: differing(seen, nothing) };
     studio.scene.remove(cloth);
     cloth.dispose();
     model.dispose();
@@ -104,13 +114,13 @@ export async function control(golden: Golden) {
   };
   const shared = await share(studio.renderer);
   const copied = await share();
-  // Without its buffer: three makes one of the array, which is empty.
+  // Without our buffer three makes one of the array, here of zeros.
   const { model, cloth } = await dress(studio, golden, 'cpu');
   const whole = await studio.picture();
   const position = cloth.geometry.getAttribute('position') as THREE.BufferAttribute;
   position.array.fill(0);
   position.needsUpdate = true;
-  const missing = apart(whole, await studio.picture());
+  const missing = differing(whole, await studio.picture());
   cloth.dispose();
   model.dispose();
   const { errors } = studio;
@@ -118,21 +128,24 @@ export async function control(golden: Golden) {
   return { shared, copied, missing, errors };
 }
 
-/** Two cloths of one model in two poses, one disposed while the other goes on; then the model computes on the CPU. */
-export async function twins(golden: Golden) {
+/**
+ * Two cloths of one model. One is disposed of and the other goes on; then the model computes on the CPU, and on the GPU
+ * again.
+ */
+export async function clones(golden: Golden) {
   const studio = await Studio.open();
   const { model, cloth } = await dress(studio, golden, 'webgpu', studio.renderer);
-  studio.frame(cloth);
-  const twin = cloth.clone();
-  twin.castShadow = true;
-  studio.scene.add(twin);
+  studio.lookAt(cloth);
+  const clone = cloth.clone();
+  clone.castShadow = true;
+  studio.scene.add(clone);
   await settle(cloth);
-  await settle(twin);
-  const both = [cloth.zeroCopy, twin.zeroCopy];
+  await settle(clone);
+  const both = [cloth.zeroCopy, clone.zeroCopy];
   const two = await studio.picture();
-  studio.scene.remove(twin);
+  studio.scene.remove(clone);
   const one = await studio.picture();
-  twin.dispose();
+  clone.dispose();
   await settle(cloth);
   const left = await studio.picture();
   await model.setBackend('cpu');
@@ -142,7 +155,13 @@ export async function twins(golden: Golden) {
   await model.setBackend('webgpu', deviceOf(studio.renderer));
   await settle(cloth);
   const back = await studio.picture();
-  const result = { both, sameWithTwin: apart(two, one), afterTwin: apart(one, left), after, onCpu: apart(left, onCpu), back: apart(left, back), again: cloth.zeroCopy };
+  const pictures = {
+    withClone: differing(two, one),
+    afterClone: differing(one, left),
+    onCpu: differing(left, onCpu),
+    back: differing(left, back),
+  };
+  const result = { both, pictures, after, again: cloth.zeroCopy };
   cloth.dispose();
   model.dispose();
   const { errors } = studio;
@@ -150,36 +169,36 @@ export async function twins(golden: Golden) {
   return { ...result, errors };
 }
 
-/** WebGLRenderer, or none: the prediction is read back and shows late, with the device's loss in the midst. */
+/** Without WebGPURenderer the prediction is read back and shows late. In the midst of it the device is destroyed. */
 export async function late(golden: Golden) {
   const model = await loadModel(address(golden.name), { backend: 'webgpu' });
   const character = characterOf(model.joints, golden.poses[0]!);
   const cloth = new Cloth(model, character, new THREE.MeshBasicMaterial() as THREE.Material);
-  const shown = () => (cloth.geometry.getAttribute('position').array as Float32Array).slice();
-  const expected = (pose: number) => {
-    const twin = new Cloth(model, characterOf(model.joints, golden.poses[pose]!), cloth.material);
-    return (twin.geometry.getAttribute('position').array as Float32Array).slice();
-  };
+  const reasons: (string | undefined)[] = [];
+  model.addEventListener('backend', () => reasons.push(model.fallback));
+  const shown = () => positionsOf(cloth).slice();
+  // A new cloth's first prediction is the CPU's.
+  const expected = (pose: number) =>
+    positionsOf(new Cloth(model, characterOf(model.joints, golden.poses[pose]!), cloth.material));
   const atOnce = difference(shown(), expected(0));
-  strike(character, golden.poses[1]!);
+  setPose(character, golden.poses[1]!);
   cloth.update();
   const stillOld = difference(shown(), expected(0));
   await cloth.settled();
   const thenNew = difference(shown(), expected(1));
-  // Many frames at once: some are skipped, and the last one is shown all the same.
+  // Many updates at once: some predictions are skipped, and that of the last one is shown all the same.
   for (let i = 0; i < 10; i++) {
-    strike(character, golden.poses[i % golden.poses.length]!);
+    setPose(character, golden.poses[i % golden.poses.length]!);
     cloth.update();
     if (i === 5) model.device!.destroy();
   }
-  strike(character, golden.poses[2]!);
+  setPose(character, golden.poses[2]!);
   cloth.update();
   await cloth.settled();
   const last = difference(shown(), expected(2));
-  const { backend, fallback } = cloth;
   cloth.dispose();
   model.dispose();
-  return { atOnce, stillOld, thenNew, last, backend, fallback };
+  return { atOnce, stillOld, thenNew, last, reasons };
 }
 
 /** The device of three's renderer is destroyed in the midst of an animation; then the page makes a new renderer. */
@@ -190,17 +209,15 @@ export async function lostRenderer(golden: Golden) {
   const zeroCopy = cloth.zeroCopy;
   const events: string[] = [];
   model.addEventListener('backend', () => events.push(cloth.backend));
-  let [frames, error] = [0, 0];
+  let [updates, error] = [0, 0];
   for (let frame = 0; frame < 12; frame++) {
     if (frame === 4) deviceOf(studio.renderer)!.destroy();
-    strike(character, golden.poses[frame % golden.poses.length]!);
+    setPose(character, golden.poses[frame % golden.poses.length]!);
     cloth.update();
-    frames++;
-    // From the arrays on, every frame is the CPU's.
+    updates++;
+    // What is not drawn from buffers is the CPU's prediction for this very pose.
     if (!cloth.zeroCopy) {
-      const shown = cloth.geometry.getAttribute('position').array as Float32Array;
-      const wanted = new Cloth(model, character, cloth.material).geometry.getAttribute('position').array as Float32Array;
-      error = Math.max(error, difference(shown, wanted));
+      error = Math.max(error, difference(positionsOf(cloth), positionsOf(new Cloth(model, character, cloth.material))));
     }
     await new Promise((resolve) => setTimeout(resolve, 20));
   }
@@ -210,14 +227,14 @@ export async function lostRenderer(golden: Golden) {
   await model.setBackend('webgpu', deviceOf(next.renderer));
   const again = new Cloth(model, character, cloth.material, next.renderer);
   next.scene.add(again);
-  next.frame(again);
+  next.lookAt(again);
   await settle(again);
   const seen = await next.picture();
   again.visible = false;
-  const covered = apart(seen, await next.picture());
+  const covered = differing(seen, await next.picture());
   const back = { zeroCopy: again.zeroCopy, covered };
   again.dispose();
   model.dispose();
   next.close();
-  return { zeroCopy, frames, events, error, after, back };
+  return { zeroCopy, updates, events, error, after, back };
 }

@@ -1,8 +1,8 @@
-//! The body that cloth is kept out of: a simplified mesh of the character's, posed like it. Optional; a model without it predicts as
-//! the network does. The file's tensors: `body.rest` [b, 3] in the order of [`Body::rest`], `body.joints` and `body.weights` [b, width],
-//! `body.triangles` [t, 3], `body.seeds` [n, s].
+//! The body that cloth is kept out of: a simplified mesh of the character's, posed like it. Optional; a model without
+//! it predicts as the network does. The file's tensors: `body.rest` [b, 3] in the order of [`Body::rest`],
+//! `body.joints` and `body.weights` [b, width], `body.triangles` [t, 3], `body.seeds` [n, s].
 
-use super::Skin;
+use super::Skinning;
 use super::write::Writer;
 use crate::Result;
 use crate::file::Tensors;
@@ -13,18 +13,20 @@ use glam::Vec3;
 pub struct Body<B, I> {
     /// `b`: vertices.
     pub vertices: usize,
-    /// Canonical positions, metres [b, 3]; first [`LANDMARKS`](crate::cpu::collide::LANDMARKS) that lie evenly, then those that may be
-    /// inside another part of the body, at most [`BURIABLE`](crate::cpu::bury::BURIABLE).
+    /// Canonical positions, metres [b, 3]; first [`LANDMARKS`](crate::cpu::repair::collide::LANDMARKS) that lie evenly,
+    /// then those that may be inside another part of the body, at most
+    /// [`BURIABLE`](crate::cpu::repair::bury::BURIABLE).
     pub rest: B,
     /// Skin weights.
-    pub skin: Skin<B, I>,
+    pub skinning: Skinning<B, I>,
     /// Triangles [t, 3].
-    pub triangles: Vec<u32>,
+    pub triangles: I,
     /// Canonical area of each vertex, square metres: a third of its triangles' [b].
     pub areas: B,
     /// The triangles around each body vertex.
     pub fans: Fans<I>,
-    /// Body vertices near which each cloth vertex was in training [n, s]; the last on the other side of a crease, or the first again.
+    /// Body vertices near which each cloth vertex was in training [n, s]; the last on the other side of a crease, or
+    /// the first again.
     pub seeds: I,
 }
 
@@ -52,7 +54,8 @@ impl Fans<Vec<u32>> {
     }
 }
 
-/// Area of each vertex: a third of its triangles', zero where `f32` cannot hold it; positions [b, 3], triangles [t, 3] -> [b].
+/// Area of each vertex: a third of its triangles', zero where `f32` cannot hold it; positions [b, 3], triangles [t, 3]
+/// -> [b].
 pub fn areas(positions: &[f32], triangles: &[u32]) -> Vec<f32> {
     let mut areas = vec![0.0; positions.len() / 3];
     for triangle in triangles.as_chunks::<3>().0 {
@@ -66,10 +69,10 @@ pub fn areas(positions: &[f32], triangles: &[u32]) -> Vec<f32> {
 
 impl Body<Vec<f32>, Vec<u32>> {
     /// A body of vertices `rest` [b, 3], of `triangles` [t, 3] whose corners are below b; `seeds` [n, s] likewise.
-    pub fn new(rest: Vec<f32>, skin: Skin<Vec<f32>, Vec<u32>>, triangles: Vec<u32>, seeds: Vec<u32>) -> Self {
+    pub fn new(rest: Vec<f32>, skinning: Skinning<Vec<f32>, Vec<u32>>, triangles: Vec<u32>, seeds: Vec<u32>) -> Self {
         let vertices = rest.len() / 3;
         let (areas, fans) = (areas(&rest, &triangles), Fans::new(vertices, &triangles));
-        Self { vertices, rest, skin, triangles, areas, fans, seeds }
+        Self { vertices, rest, skinning, triangles, areas, fans, seeds }
     }
 
     /// The body of a file for `n` cloth vertices and `joints` joints; `None` where it has none.
@@ -89,15 +92,15 @@ impl Body<Vec<f32>, Vec<u32>> {
             let tensor = if width == 0 { "body.weights" } else { "body.seeds" }.to_owned();
             return Err(crate::Error::Shape { tensor, wanted, found: "none".to_owned() });
         }
-        Ok(Some(Self::new(rest, Skin { joints: slots, weights, width }, triangles, seeds)))
+        Ok(Some(Self::new(rest, Skinning { joints: slots, weights, width }, triangles, seeds)))
     }
 
     /// Adds it to the file of a model of `n` cloth vertices.
     pub(super) fn write(&self, n: usize, writer: &mut Writer) {
-        let (count, width) = (self.vertices, self.skin.width);
+        let (count, width) = (self.vertices, self.skinning.width);
         writer.fixed("body.rest", &[count, 3], &self.rest);
-        writer.indices("body.joints", &[count, width], &self.skin.joints);
-        writer.fixed("body.weights", &[count, width], &self.skin.weights);
+        writer.indices("body.joints", &[count, width], &self.skinning.joints);
+        writer.fixed("body.weights", &[count, width], &self.skinning.weights);
         writer.indices("body.triangles", &[self.triangles.len() / 3, 3], &self.triangles);
         writer.indices("body.seeds", &[n, self.seeds.len() / n], &self.seeds);
     }
@@ -113,8 +116,8 @@ impl<B, I> Body<B, I> {
         Body {
             vertices: self.vertices,
             rest: values(&self.rest),
-            skin: self.skin.map(values, indices),
-            triangles: self.triangles.clone(),
+            skinning: self.skinning.map(values, indices),
+            triangles: indices(&self.triangles),
             areas: values(&self.areas),
             fans: Fans { offsets: indices(&self.fans.offsets), corners: indices(&self.fans.corners) },
             seeds: indices(&self.seeds),

@@ -8,7 +8,15 @@ mod write;
 use crate::pose::Rig;
 use crate::topology::Graph;
 pub use body::{Body, Fans, areas};
+use std::sync::Arc;
 pub use write::Storage;
+
+/// Name of the skin weights `W_C`, in the file and among [`Model::parameters`].
+pub const CLOTH_WEIGHTS: &str = "cloth.weights";
+/// Name of the skeleton stream's basis `B`.
+pub const SKELETON_BASIS: &str = "skeleton.basis";
+/// Name of the mesh stream's basis `M`.
+pub const MESH_BASIS: &str = "mesh.basis";
 
 /// A model on the host, as a file holds it.
 pub type HostModel = Model<Vec<f32>, Vec<u32>>;
@@ -45,7 +53,7 @@ pub struct Linear<B> {
 
 /// Sparse skin weights in rows of equal width: vertex `i` follows joint `joints[i, s]` by `weights[i, s]`.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Skin<B, I> {
+pub struct Skinning<B, I> {
     /// Joint per slot [n, width]; unused slots name joint 0 with weight 0.
     pub joints: I,
     /// Weight per slot [n, width].
@@ -60,7 +68,7 @@ pub struct Reference<B, I> {
     /// `T_B[I_C]` [n, 3].
     pub rest: B,
     /// `W_B[I_C]`, which is also `W_C^I`.
-    pub skin: Skin<B, I>,
+    pub skinning: Skinning<B, I>,
     /// Mean of V [3].
     pub mean: [f32; 3],
     /// Standard deviation of V [3].
@@ -86,9 +94,9 @@ pub struct Layer<B> {
 
 /// Seams kept for drawing: several drawn vertices may share one cloth vertex.
 #[derive(Clone, Debug, PartialEq, Default)]
-pub struct Surface {
+pub struct Surface<I = Vec<u32>> {
     /// Drawn vertex -> cloth vertex [d].
-    pub vertex: Vec<u32>,
+    pub vertex: I,
     /// Texture coordinates [d, 2].
     pub uv: Vec<f32>,
     /// Drawn-vertex indices [t, 3].
@@ -101,31 +109,31 @@ pub struct Model<B, I> {
     /// Sizes.
     pub sizes: Sizes,
     /// Joints and body frame.
-    pub rig: Rig,
+    pub rig: Arc<Rig>,
     /// Cloth triangles [t, 3].
-    pub triangles: Vec<u32>,
+    pub triangles: I,
     /// Neighbours by the cloth's edges.
     pub graph: Graph<I>,
     /// `T_C` [n, 3].
     pub rest: B,
     /// `W_C`.
-    pub skin: Skin<B, I>,
+    pub skinning: Skinning<B, I>,
     /// What the mesh stream sees of the body.
     pub reference: Reference<B, I>,
     /// Φ.
     pub embedding: Vec<Linear<B>>,
     /// `B`, vertex-major [n, 3, m].
-    pub skeleton: B,
+    pub skeleton_basis: B,
     /// Graph layers.
     pub layers: Vec<Layer<B>>,
     /// Vertex-level MLP.
-    pub vertex: Vec<Linear<B>>,
+    pub vertex_mlp: Vec<Linear<B>>,
     /// `M`, vertex-major [n, 3, k].
-    pub mesh: B,
+    pub mesh_basis: B,
     /// Whether M has anything to add. Where all of it is zero, the mesh stream is not computed.
     pub mesh_stream: bool,
     /// What is drawn, when it differs from the cloth mesh.
-    pub surface: Option<Surface>,
+    pub surface: Option<Surface<I>>,
     /// What the cloth is kept out of.
     pub body: Option<Body<B, I>>,
     /// What the model was trained on: a JSON object, free in form.
@@ -133,18 +141,22 @@ pub struct Model<B, I> {
 }
 
 impl<B> Linear<B> {
+    fn parameters(&self, name: &str) -> [(String, &B); 2] {
+        [(format!("{name}.weight"), &self.weight), (format!("{name}.bias"), &self.bias)]
+    }
+
     fn map<'a, C>(&'a self, values: &mut impl FnMut(&'a B) -> C) -> Linear<C> {
         Linear { weight: values(&self.weight), bias: values(&self.bias), inputs: self.inputs, outputs: self.outputs }
     }
 }
 
-impl<B, I> Skin<B, I> {
+impl<B, I> Skinning<B, I> {
     fn map<'a, C, J>(
         &'a self,
         values: &mut impl FnMut(&'a B) -> C,
         indices: &mut impl FnMut(&'a I) -> J,
-    ) -> Skin<C, J> {
-        Skin { joints: indices(&self.joints), weights: values(&self.weights), width: self.width }
+    ) -> Skinning<C, J> {
+        Skinning { joints: indices(&self.joints), weights: values(&self.weights), width: self.width }
     }
 }
 
@@ -170,46 +182,61 @@ impl<B, I> Model<B, I> {
         let (values, indices) = (&mut values, &mut indices);
         Model {
             sizes: self.sizes,
-            rig: self.rig.clone(),
-            triangles: self.triangles.clone(),
+            rig: Arc::clone(&self.rig),
+            triangles: indices(&self.triangles),
             graph: self.graph.map(indices),
             rest: values(&self.rest),
-            skin: self.skin.map(values, indices),
+            skinning: self.skinning.map(values, indices),
             reference: Reference {
                 rest: values(&self.reference.rest),
-                skin: self.reference.skin.map(values, indices),
+                skinning: self.reference.skinning.map(values, indices),
                 mean: self.reference.mean,
                 std: self.reference.std,
                 edge_scale: self.reference.edge_scale,
             },
             embedding: self.embedding.iter().map(|layer| layer.map(values)).collect(),
-            skeleton: values(&self.skeleton),
+            skeleton_basis: values(&self.skeleton_basis),
             layers: self.layers.iter().map(|layer| layer.map(values)).collect(),
-            vertex: self.vertex.iter().map(|layer| layer.map(values)).collect(),
-            mesh: values(&self.mesh),
+            vertex_mlp: self.vertex_mlp.iter().map(|layer| layer.map(values)).collect(),
+            mesh_basis: values(&self.mesh_basis),
             mesh_stream: self.mesh_stream,
-            surface: self.surface.clone(),
+            surface: self.surface.as_ref().map(|surface| Surface {
+                vertex: indices(&surface.vertex),
+                uv: surface.uv.clone(),
+                triangles: surface.triangles.clone(),
+            }),
             body: self.body.as_ref().map(|body| body.map(values, indices)),
             training: self.training.clone(),
         }
     }
 
-    /// The trainable arrays, in a fixed order: W_C, B, M, Φ, vertex MLP, graph layers. network.md §6.
-    pub fn parameters(&self) -> Vec<&B> {
-        let mut list = vec![&self.skin.weights, &self.skeleton, &self.mesh];
-        for layer in self.embedding.iter().chain(&self.vertex).chain(self.layers.iter().map(|layer| &layer.project)) {
-            list.extend([&layer.weight, &layer.bias]);
+    /// The trainable arrays by name, in a fixed order: W_C, B, M, Φ, vertex MLP, graph layers. network.md §6. Names are
+    /// those of the file, where the four products stacked in `graph.L.project` stand apart.
+    pub fn parameters(&self) -> Vec<(String, &B)> {
+        let mut list = vec![
+            (CLOTH_WEIGHTS.to_owned(), &self.skinning.weights),
+            (SKELETON_BASIS.to_owned(), &self.skeleton_basis),
+            (MESH_BASIS.to_owned(), &self.mesh_basis),
+        ];
+        for (name, layers) in [("embedding", &self.embedding), ("vertex", &self.vertex_mlp)] {
+            list.extend(layers.iter().enumerate().flat_map(|(i, layer)| layer.parameters(&format!("{name}.{i}"))));
         }
-        for layer in &self.layers {
-            list.extend([&layer.edge, &layer.gate, &layer.norm_weight, &layer.norm_bias]);
+        for (l, layer) in self.layers.iter().enumerate() {
+            list.extend(layer.project.parameters(&format!("graph.{l}.project")));
+        }
+        for (l, Layer { edge, gate, norm_weight, norm_bias, .. }) in self.layers.iter().enumerate() {
+            let parts =
+                [("edge.weight", edge), ("gate.weight", gate), ("norm.weight", norm_weight), ("norm.bias", norm_bias)];
+            list.extend(parts.map(|(part, values)| (format!("graph.{l}.{part}"), values)));
         }
         list
     }
 
     /// [`Self::parameters`], to be changed.
-    pub fn parameters_mut(&mut self) -> Vec<&mut B> {
-        let mut list = vec![&mut self.skin.weights, &mut self.skeleton, &mut self.mesh];
-        for layer in self.embedding.iter_mut().chain(&mut self.vertex) {
+    pub fn parameters_mut(&mut self) -> Vec<(String, &mut B)> {
+        let names: Vec<String> = self.parameters().into_iter().map(|(name, _)| name).collect();
+        let mut list = vec![&mut self.skinning.weights, &mut self.skeleton_basis, &mut self.mesh_basis];
+        for layer in self.embedding.iter_mut().chain(&mut self.vertex_mlp) {
             list.extend([&mut layer.weight, &mut layer.bias]);
         }
         let mut rest = Vec::new();
@@ -218,6 +245,6 @@ impl<B, I> Model<B, I> {
             rest.extend([&mut layer.edge, &mut layer.gate, &mut layer.norm_weight, &mut layer.norm_bias]);
         }
         list.extend(rest);
-        list
+        names.into_iter().zip(list).collect()
     }
 }

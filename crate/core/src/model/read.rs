@@ -1,11 +1,13 @@
 //! Model file -> model, checking every name, shape and index. network.md §8.
 
-use super::{Body, HostModel, Layer, Linear, Model, Reference, Sizes, Skin, Surface};
+use super::{Body, HostModel, Layer, Linear, Model, Reference, Sizes, Skinning, Surface};
+use super::{CLOTH_WEIGHTS, MESH_BASIS, SKELETON_BASIS};
 use crate::file::Tensors;
 use crate::pose::{Frame, Range, Rig, Transform};
 use crate::topology::Graph;
 use crate::{Error, Result};
 use miniserde::{Deserialize, Serialize, json};
+use std::sync::Arc;
 
 /// The JSON object under `__metadata__["ctsn"]`.
 #[derive(Deserialize, Serialize)]
@@ -30,9 +32,9 @@ impl HostModel {
             return Err(Error::NotModel(format!("wanted vertices and joints, found {n} and {joints}")));
         }
         let triangles = file.u32("cloth.triangles", &[None, Some(3)], n)?;
-        let dense = file.f32("cloth.weights", &[Some(n), Some(joints)])?.0;
-        let (skeleton, m) = basis(&file, "skeleton.basis", n)?;
-        let (mesh, k) = basis(&file, "mesh.basis", n)?;
+        let dense = file.f32(CLOTH_WEIGHTS, &[Some(n), Some(joints)])?.0;
+        let (skeleton_basis, m) = basis(&file, SKELETON_BASIS, n)?;
+        let (mesh_basis, k) = basis(&file, MESH_BASIS, n)?;
         let embedding = mlp(&file, "embedding", 12 * joints, Some(m))?;
         let layers = graph(&file)?;
         let features = layers.last().map_or(3, |layer| layer.project.outputs / 4);
@@ -52,18 +54,18 @@ impl HostModel {
             graph: Graph::new(n, &triangles),
             triangles,
             rest,
-            skin: Skin::from_dense(&dense, joints),
+            skinning: Skinning::from_dense(&dense, joints),
             reference: reference(&file, n, joints, description.edge_scale)?,
             embedding,
-            skeleton,
+            skeleton_basis,
             layers,
-            vertex: mlp(&file, "vertex", features, Some(k))?,
-            mesh_stream: mesh.iter().any(|value| *value != 0.0),
-            mesh,
+            vertex_mlp: mlp(&file, "vertex", features, Some(k))?,
+            mesh_stream: mesh_basis.iter().any(|value| *value != 0.0),
+            mesh_basis,
             surface: surface(&file, n)?,
             body: Body::read(&file, n, joints)?,
             training: file.metadata.get("training").cloned(),
-            rig: rig(&file, description)?,
+            rig: Arc::new(rig(&file, description)?),
         })
     }
 }
@@ -135,25 +137,25 @@ fn reference(file: &Tensors, n: usize, joints: usize, edge_scale: f32) -> Result
     let (mean, std) = (three("reference.mean")?, three("reference.std")?);
     positive("reference.std", &std)?;
     positive("edge_scale", &[edge_scale])?;
-    let skin = Skin::from_dense(&gather(&weights, joints), joints);
-    Ok(Reference { rest: gather(&rest, 3), skin, mean, std, edge_scale })
+    let skinning = Skinning::from_dense(&gather(&weights, joints), joints);
+    Ok(Reference { rest: gather(&rest, 3), skinning, mean, std, edge_scale })
 }
 
-impl Skin<Vec<f32>, Vec<u32>> {
+impl Skinning<Vec<f32>, Vec<u32>> {
     /// Dense weights [n, joints] -> rows as wide as the fullest vertex needs.
     pub fn from_dense(dense: &[f32], joints: usize) -> Self {
         let used = |row: &[f32]| row.iter().filter(|weight| **weight != 0.0).count();
         let width = dense.chunks_exact(joints).map(used).max().unwrap_or(0).max(1);
-        let mut skin = Skin { joints: Vec::new(), weights: Vec::new(), width };
+        let mut skinning = Skinning { joints: Vec::new(), weights: Vec::new(), width };
         for (i, row) in dense.chunks_exact(joints).enumerate() {
             for (joint, weight) in row.iter().enumerate().filter(|entry| *entry.1 != 0.0) {
-                skin.joints.push(joint as u32);
-                skin.weights.push(*weight);
+                skinning.joints.push(joint as u32);
+                skinning.weights.push(*weight);
             }
-            skin.joints.resize((i + 1) * width, 0);
-            skin.weights.resize((i + 1) * width, 0.0);
+            skinning.joints.resize((i + 1) * width, 0);
+            skinning.weights.resize((i + 1) * width, 0.0);
         }
-        skin
+        skinning
     }
 }
 

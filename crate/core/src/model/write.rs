@@ -1,7 +1,7 @@
 //! Model -> model file, the inverse of `read.rs`. network.md §8.
 
 use super::read::{Description, transpose};
-use super::{HostModel, Linear, Skin};
+use super::{CLOTH_WEIGHTS, HostModel, Linear, MESH_BASIS, SKELETON_BASIS, Skinning};
 use crate::file::{Tensor, Tensors};
 use crate::pose::Frame;
 use miniserde::json;
@@ -80,7 +80,7 @@ impl HostModel {
         let (n, joints) = (self.sizes.vertices, self.sizes.joints);
         writer.fixed("cloth.rest", &[n, 3], &self.rest);
         writer.indices("cloth.triangles", &[self.triangles.len() / 3, 3], &self.triangles);
-        writer.learned("cloth.weights", &[n, joints], &self.skin.to_dense(joints));
+        writer.learned(CLOTH_WEIGHTS, &[n, joints], &self.skinning.to_dense(joints));
         if let Some(surface) = &self.surface {
             writer.indices("draw.vertex", &[surface.vertex.len()], &surface.vertex);
             writer.fixed("draw.uv", &[surface.vertex.len(), 2], &surface.uv);
@@ -97,7 +97,7 @@ impl HostModel {
     /// The gathered reference vertices, each distinct one once.
     fn write_reference(&self, writer: &mut Writer) {
         let (joints, reference) = (self.sizes.joints, &self.reference);
-        let dense = reference.skin.to_dense(joints);
+        let dense = reference.skinning.to_dense(joints);
         let mut rows = std::collections::BTreeMap::new();
         let (mut rest, mut weights, mut index) = (Vec::new(), Vec::new(), Vec::new());
         for (position, row) in reference.rest.chunks_exact(3).zip(dense.chunks_exact(joints)) {
@@ -122,11 +122,11 @@ impl HostModel {
         let sizes = self.sizes;
         let (n, features) = (sizes.vertices, sizes.features);
         for (name, basis, count) in
-            [("skeleton.basis", &self.skeleton, sizes.embedding), ("mesh.basis", &self.mesh, sizes.basis)]
+            [(SKELETON_BASIS, &self.skeleton_basis, sizes.embedding), (MESH_BASIS, &self.mesh_basis, sizes.basis)]
         {
             writer.learned(name, &[count, n, 3], &transpose(basis, n * 3, count));
         }
-        for (name, layers) in [("embedding", &self.embedding), ("vertex", &self.vertex)] {
+        for (name, layers) in [("embedding", &self.embedding), ("vertex", &self.vertex_mlp)] {
             layers.iter().enumerate().for_each(|(i, layer)| writer.linear(&format!("{name}.{i}"), layer));
         }
         for (l, layer) in self.layers.iter().enumerate() {
@@ -150,7 +150,7 @@ impl HostModel {
     }
 }
 
-impl Skin<Vec<f32>, Vec<u32>> {
+impl Skinning<Vec<f32>, Vec<u32>> {
     /// Weights as a dense matrix [n, joints].
     pub fn to_dense(&self, joints: usize) -> Vec<f32> {
         let mut dense = vec![0.0; self.weights.len() / self.width * joints];

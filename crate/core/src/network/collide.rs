@@ -1,7 +1,10 @@
 //! Penetration repair: the prediction is moved out of the posed body. Paper, § Penetration Handling.
 
-use super::{Activations, DeviceModel};
-use crate::device::{Device, Space};
+use super::{Activations, DeviceModel, skin};
+use crate::device::Device;
+use crate::model::Body;
+use crate::operation::{Bury, Collide, Normals, Settle, Space, Spread};
+use crate::topology::Graph;
 
 /// Rounds in which what is pushed out takes its neighbours along.
 const ROUNDS: usize = 2;
@@ -12,7 +15,7 @@ pub struct Collision<B> {
     pub body: B,
     /// Their unit normals [b, 3].
     pub normals: B,
-    /// The positions again, without those inside another part of the body [b, 3].
+    /// The positions again; vertices inside another part of the body are moved far away [b, 3].
     pub exposed: B,
     /// What each cloth vertex lacks to its gap [n, 3].
     pub push: B,
@@ -36,12 +39,45 @@ impl<B> Collision<B> {
 /// Moves the predicted positions; nothing happens where the model has no body.
 pub fn collide<D: Device>(device: &mut D, model: &DeviceModel<D>, a: &mut Activations<D::Buffer>) {
     let (Some(body), Some(c)) = (&model.body, &mut a.collision) else { return };
-    device.skin(&body.rest, &body.skin, &a.body_frame, Space::World, &mut c.body);
-    device.normals(&c.body, &body.triangles, &mut c.normals);
-    device.bury(body, &c.body, &c.normals, &mut c.exposed);
-    device.collide(body, &c.exposed, &c.normals, &a.positions, &mut c.push);
+    expose(device, body, &a.body_frame, Space::World, [&mut c.body, &mut c.normals, &mut c.exposed]);
+    push(device, body, [&c.exposed, &c.normals, &a.positions], &mut c.push);
+    let Graph { offsets, neighbours } = &model.graph;
     let [first, second] = &mut c.displacement;
-    device.spread(&model.graph, &c.push, &c.push, first);
-    device.spread(&model.graph, &c.push, first, second);
-    device.settle(body, &c.exposed, &c.normals, second, &mut a.positions);
+    device.run(Spread { offsets, neighbours, push: &c.push, before: &c.push, after: &mut *first }.into());
+    device.run(Spread { offsets, neighbours, push: &c.push, before: first, after: &mut *second }.into());
+    let settle = Settle {
+        exposed: &c.exposed,
+        normals: &c.normals,
+        offsets: &body.fans.offsets,
+        corners: &body.fans.corners,
+        seeds: &body.seeds,
+        displacement: second,
+        positions: &mut a.positions,
+    };
+    device.run(settle.into());
+}
+
+/// Poses the body in `space` and buries what is inside another part of it: posed positions, their normals and the
+/// exposed positions [b, 3].
+pub fn expose<D: Device>(
+    device: &mut D,
+    body: &Body<D::Buffer, D::Indices>,
+    transforms: &D::Buffer,
+    space: Space,
+    [posed, normals, exposed]: [&mut D::Buffer; 3],
+) {
+    skin(device, &body.rest, &body.skinning, transforms, space, posed);
+    device.run(Normals { positions: &*posed, triangles: &body.triangles, normals: &mut *normals }.into());
+    device.run(Bury { posed: &*posed, normals: &*normals, areas: &body.areas, exposed }.into());
+}
+
+/// What each cloth vertex lacks to its gap [n, 3]: exposed positions and normals of the body [b, 3], cloth [n, 3].
+pub fn push<D: Device>(
+    device: &mut D,
+    body: &Body<D::Buffer, D::Indices>,
+    [exposed, normals, positions]: [&D::Buffer; 3],
+    push: &mut D::Buffer,
+) {
+    let (offsets, corners, seeds) = (&body.fans.offsets, &body.fans.corners, &body.seeds);
+    device.run(Collide { exposed, normals, offsets, corners, seeds, positions, push }.into());
 }

@@ -1,25 +1,71 @@
-//! Mesh-based residual stream: graph transformer over the reference mesh, vertex MLP, `Δ_M[i] = Σ_j w_ij M_j[i]`. network.md §3.
+//! Mesh-based residual stream: graph transformer over the reference mesh, vertex MLP, `Δ_M[i] = Σ_j w_ij M_j[i]`.
+//! network.md §3.
 
-use super::{Activations, DeviceModel, LayerActivations};
-use crate::device::{Activation, Device, Space};
+use super::{Activations, DeviceModel, LayerActivations, skin};
+use crate::device::Device;
+use crate::model::Layer;
+use crate::operation::{Activation, Attend, Blend, Features, Linear, Space};
+use crate::topology::Graph;
 
 /// Body frame and T_C + Δ_S -> Δ_M and T_C(γ).
 pub(super) fn mesh<D: Device>(device: &mut D, model: &DeviceModel<D>, a: &mut Activations<D::Buffer>) {
     let reference = &model.reference;
-    device.skin(&reference.rest, &reference.skin, &a.body_frame, Space::Body, &mut a.reference);
-    device.features(&a.reference, &model.rest, reference, &mut a.nodes, &mut a.potentials);
+    skin(device, &reference.rest, &reference.skinning, &a.body_frame, Space::Body, &mut a.reference);
+    let features = Features {
+        v: &a.reference,
+        rest: &model.rest,
+        mean: reference.mean,
+        deviation: reference.std,
+        edge_scale: reference.edge_scale,
+        nodes: &mut a.nodes,
+        potentials: &mut a.potentials,
+    };
+    device.run(features.into());
     for (l, layer) in model.layers.iter().enumerate() {
         let (before, after) = a.layers.split_at_mut(l);
         let h = before.last().map_or(&a.nodes, |layer| &layer.output);
-        let LayerActivations { projected, attended, output } = &mut after[0];
-        device.linear(h, &layer.project, Activation::None, projected);
-        device.attend(&model.graph, model.sizes, projected, &a.potentials, layer, attended, output);
+        graph_layer(device, (&model.graph, model.sizes.heads), layer, [h, &a.potentials], &mut after[0]);
     }
-    for (i, layer) in model.vertex.iter().enumerate() {
-        let (before, after) = a.vertex.split_at_mut(i);
-        let h = before.last().or(a.layers.last().map(|layer| &layer.output)).unwrap_or(&a.nodes);
-        device.linear(h, layer, Activation::Relu, &mut after[0]);
+    for (i, layer) in model.vertex_mlp.iter().enumerate() {
+        let (before, after) = a.vertex_mlp.split_at_mut(i);
+        let x = before.last().or(a.layers.last().map(|layer| &layer.output)).unwrap_or(&a.nodes);
+        let (weight, bias, activation) = (&layer.weight, &layer.bias, Activation::Relu);
+        device.run(Linear { x, weight, bias, activation, y: &mut after[0] }.into());
     }
-    let weights = a.vertex.last().unwrap_or(&a.nodes);
-    device.blend(weights, &model.mesh, &a.coarse, &a.confidence, &mut a.mesh, &mut a.template);
+    let blend = Blend {
+        weights: a.vertex_mlp.last().unwrap_or(&a.nodes),
+        basis: &model.mesh_basis,
+        rest: &a.coarse,
+        confidence: &a.confidence,
+        residual: &mut a.mesh,
+        template: &mut a.template,
+    };
+    device.run(blend.into());
+}
+
+/// One layer over a graph with so many heads: h [n, inputs] and edge potentials [n, 6] -> the next h.
+pub fn graph_layer<D: Device>(
+    device: &mut D,
+    (graph, heads): (&Graph<D::Indices>, usize),
+    layer: &Layer<D::Buffer>,
+    [h, potentials]: [&D::Buffer; 2],
+    room: &mut LayerActivations<D::Buffer>,
+) {
+    let LayerActivations { projected, attended, output } = room;
+    let (weight, bias) = (&layer.project.weight, &layer.project.bias);
+    device.run(Linear { x: h, weight, bias, activation: Activation::None, y: &mut *projected }.into());
+    let attend = Attend {
+        offsets: &graph.offsets,
+        neighbours: &graph.neighbours,
+        heads,
+        projected,
+        potentials,
+        edge: &layer.edge,
+        gate: &layer.gate,
+        norm_weight: &layer.norm_weight,
+        norm_bias: &layer.norm_bias,
+        attended,
+        output,
+    };
+    device.run(attend.into());
 }

@@ -4,9 +4,12 @@ mod collide;
 mod embedding;
 mod graph;
 
-use crate::device::{Device, Space};
-use crate::model::Model;
-pub use collide::{Collision, collide};
+use crate::device::Device;
+use crate::model::{HostModel, Model, Skinning};
+use crate::operation::{self, BodyFrame, Normals, Space};
+pub use collide::{Collision, collide, expose, push};
+pub use graph::graph_layer;
+use std::sync::Arc;
 
 /// Which part of the network runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,7 +48,7 @@ pub struct Activations<B> {
     /// Graph layers.
     pub layers: Vec<LayerActivations<B>>,
     /// Outputs of the vertex-level MLP's layers; the last is w [n, k].
-    pub vertex: Vec<B>,
+    pub vertex_mlp: Vec<B>,
     /// Δ_M [n, 3].
     pub mesh: B,
     /// T_C + Δ_S [n, 3].
@@ -82,7 +85,7 @@ pub struct LayerActivations<B> {
 
 impl<B> Activations<B> {
     /// Room for every result of `model`; `buffer(stage, length)` makes one, for the stage that computes it.
-    pub fn new<C, I>(model: &Model<C, I>, mut buffer: impl FnMut(&str, usize) -> B) -> Self {
+    pub fn new(model: &HostModel, mut buffer: impl FnMut(&str, usize) -> B) -> Self {
         let (n, joints, features) = (model.sizes.vertices, model.sizes.joints, model.sizes.features);
         let layer = |stage: &str, buffer: &mut dyn FnMut(&str, usize) -> B| LayerActivations {
             projected: buffer(stage, n * 4 * features),
@@ -100,7 +103,7 @@ impl<B> Activations<B> {
             nodes: buffer("reference", n * 3),
             potentials: buffer("reference", n * 6),
             layers: (0..model.layers.len()).map(|l| layer(&format!("layer.{l}"), &mut buffer)).collect(),
-            vertex: model.vertex.iter().map(|layer| buffer("mesh", n * layer.outputs)).collect(),
+            vertex_mlp: model.vertex_mlp.iter().map(|layer| buffer("mesh", n * layer.outputs)).collect(),
             mesh: buffer("mesh", n * 3),
             coarse: buffer("skeleton", n * 3),
             template: buffer("template", n * 3),
@@ -127,16 +130,25 @@ impl<B> Activations<B> {
     }
 }
 
-/// The whole frame: joints and confidence (written before) -> positions in the world, their normals, and what is drawn.
-pub fn frame<D: Device>(device: &mut D, model: &DeviceModel<D>, streams: Streams, a: &mut Activations<D::Buffer>) {
-    device.body_frame(&model.rig, &a.joints, &mut a.body_frame, &mut a.pose);
+/// A whole prediction: joints and confidence (written before) -> positions in the world, their normals, and what is
+/// drawn.
+pub fn predict<D: Device>(device: &mut D, model: &DeviceModel<D>, streams: Streams, a: &mut Activations<D::Buffer>) {
+    let (rig, joints) = (Arc::clone(&model.rig), &a.joints);
+    device.run(BodyFrame { rig, joints, transforms: &mut a.body_frame, vector: &mut a.pose }.into());
     forward(device, model, streams, Space::World, a);
     if streams == Streams::Both {
         collide(device, model, a);
     }
-    device.normals(&a.positions, &model.triangles, &mut a.normals);
+    device.run(Normals { positions: &a.positions, triangles: &model.triangles, normals: &mut a.normals }.into());
     if let (Some(surface), Some(drawn)) = (&model.surface, &mut a.drawn) {
-        device.surface(&surface.vertex, &a.positions, &a.normals, drawn);
+        let surface = operation::Surface {
+            vertex: &surface.vertex,
+            positions: &a.positions,
+            normals: &a.normals,
+            drawn_positions: &mut drawn.positions,
+            drawn_normals: &mut drawn.normals,
+        };
+        device.run(surface.into());
     }
 }
 
@@ -149,12 +161,25 @@ pub fn forward<D: Device>(
     a: &mut Activations<D::Buffer>,
 ) {
     if streams == Streams::None {
-        return device.skin(&model.rest, &model.reference.skin, &a.body_frame, space, &mut a.positions);
+        return skin(device, &model.rest, &model.reference.skinning, &a.body_frame, space, &mut a.positions);
     }
     embedding::skeleton(device, model, a);
     if streams == Streams::Skeleton || !model.mesh_stream {
-        return device.skin(&a.coarse, &model.skin, &a.body_frame, space, &mut a.positions);
+        return skin(device, &a.coarse, &model.skinning, &a.body_frame, space, &mut a.positions);
     }
     graph::mesh(device, model, a);
-    device.skin(&a.template, &model.skin, &a.body_frame, space, &mut a.positions);
+    skin(device, &a.template, &model.skinning, &a.body_frame, space, &mut a.positions);
+}
+
+/// Skins `rest` [n, 3] -> positions [n, 3] in `space`. network.md §4.
+pub fn skin<D: Device>(
+    device: &mut D,
+    rest: &D::Buffer,
+    skinning: &Skinning<D::Buffer, D::Indices>,
+    transforms: &D::Buffer,
+    space: Space,
+    positions: &mut D::Buffer,
+) {
+    let Skinning { joints, weights, .. } = skinning;
+    device.run(operation::Skin { rest, joints, weights, transforms, space, positions }.into());
 }

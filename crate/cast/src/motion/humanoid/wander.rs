@@ -1,0 +1,50 @@
+//! Postures that cover the joint limits evenly, joined smoothly: they cover what lies between the authored moves.
+//! A Korobov lattice of P points: channel c of point i is frac(i gᶜ / P), so each channel takes each level once.
+//! Plain random draws left gaps; in 33 channels Halton's large primes march in step over the first hundred points.
+
+use super::posture::Posture;
+use crate::motion::curve::Channels;
+
+/// Seconds until a wandering repeats.
+pub const PERIOD: f64 = 9.9;
+/// How many wanderings there are.
+pub const COUNT: u64 = 4;
+/// Key postures in a wandering.
+pub const KEYS: u64 = 9;
+/// P, a prime: one more than the number of all keys. g, a primitive root of P.
+const LATTICE: (u64, u64) = (37, 5);
+
+/// The lower limits.
+pub const LEAST: Posture = Posture {
+    heading: -20.0,
+    hips: [-0.06, -0.26, -0.05],
+    tilt: [-8.0, -18.0, -7.0],
+    spine: [-14.0, -32.0, -24.0],
+    head: [-20.0, -42.0, -14.0],
+    arms: [[20.0, -24.0, -14.0, 6.0, -12.0]; 2],
+    feet: [[0.01, 0.0, -0.12, 2.0, 0.0]; 2],
+};
+/// The upper limits.
+pub const MOST: Posture = Posture {
+    heading: 20.0,
+    hips: [0.06, -0.02, 0.05],
+    tilt: [16.0, 18.0, 7.0],
+    spine: [32.0, 32.0, 24.0],
+    head: [24.0, 42.0, 14.0],
+    arms: [[145.0, 76.0, 56.0, 96.0, 22.0]; 2],
+    feet: [[0.12, 0.0, 0.12, 22.0, 10.0]; 2],
+};
+
+/// Key postures of wandering number `which`, from 0.
+pub fn keys(which: u64) -> Vec<(f64, Posture)> {
+    let (prime, root) = LATTICE;
+    let key = |i: u64| {
+        let level = std::cell::Cell::new((which * KEYS + i) % (prime - 1) + 1);
+        let posture = LEAST.zip(&MOST, |least, most| {
+            level.set(level.get() * root % prime);
+            least + (most - least) * level.get() as f64 / prime as f64
+        });
+        (PERIOD * i as f64 / KEYS as f64, posture)
+    };
+    (0..KEYS).map(key).collect()
+}

@@ -1,0 +1,142 @@
+//! Orthotropic Saint Venant–Kirchhoff membrane: `A ψ(F)`, `ψ = ½ G:C:G`, `G = (FᵀF - I)/2` along weft (1) and warp (2).
+//! simulation.md §2.2. The Hessian is `BᵀCB` plus the geometric part; with the stress clamped to tension it is never
+//! indefinite.
+
+use glam::{DMat3, DVec2, DVec3};
+
+use crate::simulate::matrix::outer;
+
+/// In-plane stiffness along the threads, N/m: `S₁₁ = C₁₁G₁₁ + C₁₂G₂₂`, `S₂₂ = C₁₂G₁₁ + C₂₂G₂₂`, `S₁₂ = 2 C₃₃G₁₂`.
+#[derive(Clone, Copy, Debug)]
+pub struct Membrane {
+    /// `C₁₁`, of the weft.
+    pub c11: f64,
+    /// `C₂₂`, of the warp.
+    pub c22: f64,
+    /// `C₁₂`, between the two.
+    pub c12: f64,
+    /// `C₃₃`, shear.
+    pub c33: f64,
+}
+
+/// A membrane triangle at rest.
+#[derive(Clone, Debug)]
+pub struct Triangle {
+    /// Cloth vertices.
+    pub vertices: [usize; 3],
+    /// Gradients of the three shape functions along weft and warp, 1/m.
+    pub gradients: [DVec2; 3],
+    /// Rest area, m².
+    pub area: f64,
+}
+
+/// Deformation gradient columns and second Piola stress of a triangle.
+struct Strain {
+    columns: [DVec3; 2],
+    /// s11, s22, s12 in N/m.
+    stress: [f64; 3],
+    energy: f64,
+}
+
+impl Triangle {
+    /// From the rest positions of its corners and the direction of the warp, which need not lie in its plane; `None`
+    /// when the triangle has no area to speak of.
+    pub fn new(vertices: [usize; 3], [a, b, c]: [DVec3; 3], warp: DVec3) -> Option<Self> {
+        let (e1, e2) = (b - a, c - a);
+        let normal = e1.cross(e2);
+        let area = 0.5 * normal.length();
+        let longest = e1.length_squared().max(e2.length_squared()).max((c - b).length_squared());
+        if !area.is_finite() || area <= 1e-4 * longest {
+            return None;
+        }
+        let normal = normal.normalize();
+        let along = warp.reject_from_normalized(normal);
+        // A triangle across the warp has no direction of it.
+        let v = if along.length_squared() > 1e-6 { along.normalize() } else { e1.normalize() };
+        let u = v.cross(normal);
+        let (p, q) = (DVec2::new(e1.dot(u), e1.dot(v)), DVec2::new(e2.dot(u), e2.dot(v)));
+        let determinant = p.perp_dot(q);
+        let g1 = DVec2::new(q.y, -q.x) / determinant;
+        let g2 = DVec2::new(-p.y, p.x) / determinant;
+        Some(Self { vertices, gradients: [-(g1 + g2), g1, g2], area })
+    }
+
+    /// Columns of `F = Σ x_a ⊗ g_a`.
+    fn deformation(&self, x: &[DVec3]) -> [DVec3; 2] {
+        let [a, b, c] = self.vertices.map(|i| x[i]);
+        let [_, g1, g2] = self.gradients;
+        let (d1, d2) = (b - a, c - a);
+        [d1 * g1.x + d2 * g2.x, d1 * g1.y + d2 * g2.y]
+    }
+
+    /// At the positions `x` [n], singular values of `F`, largest first: the principal stretches.
+    pub fn stretches(&self, x: &[DVec3]) -> [f64; 2] {
+        let [f1, f2] = self.deformation(x);
+        let (a, b, c) = (f1.length_squared(), f2.length_squared(), f1.dot(f2));
+        let (mean, radius) = (0.5 * (a + b), (0.25 * (a - b) * (a - b) + c * c).sqrt());
+        [(mean + radius).sqrt(), (mean - radius).max(0.0).sqrt()]
+    }
+
+    fn strain(&self, membrane: &Membrane, x: &[DVec3]) -> Strain {
+        let Membrane { c11, c22, c12, c33 } = *membrane;
+        let columns @ [f1, f2] = self.deformation(x);
+        let (g11, g22, g12) = (0.5 * (f1.length_squared() - 1.0), 0.5 * (f2.length_squared() - 1.0), 0.5 * f1.dot(f2));
+        let stress = [c11 * g11 + c12 * g22, c12 * g11 + c22 * g22, 2.0 * c33 * g12];
+        let energy = self.area * (0.5 * (stress[0] * g11 + stress[1] * g22) + stress[2] * g12);
+        Strain { columns, stress, energy }
+    }
+
+    /// Energy at the positions `x` [n], joules.
+    pub fn energy(&self, membrane: &Membrane, x: &[DVec3]) -> f64 {
+        self.strain(membrane, x).energy
+    }
+
+    /// Gradient of the energy at `x` [n] per corner, newtons: the forces are its negative.
+    pub fn gradient(&self, membrane: &Membrane, x: &[DVec3]) -> [DVec3; 3] {
+        self.derivatives(membrane, x, false, |_, _, _| {})
+    }
+
+    /// Gradient per corner in newtons, and the Hessian through `block(a, b, H_ab)` for the pairs `a >= b`: exact, or
+    /// with compression left out.
+    pub(in crate::simulate) fn derivatives(
+        &self,
+        membrane: &Membrane,
+        x: &[DVec3],
+        exact: bool,
+        mut block: impl FnMut(usize, usize, DMat3),
+    ) -> [DVec3; 3] {
+        let Strain { columns: [f1, f2], stress: [s11, s22, s12], .. } = self.strain(membrane, x);
+        let (p1, p2) = ((f1 * s11 + f2 * s12) * self.area, (f1 * s12 + f2 * s22) * self.area);
+        let Membrane { c11, c22, c12, c33 } = *membrane;
+        let [t11, t22, t12] = if exact { [s11, s22, s12] } else { tension([s11, s22, s12]) };
+        let g = self.gradients;
+        let b = g.map(|g| [f1 * g.x, f2 * g.y, f1 * g.y + f2 * g.x]);
+        for i in 0..3 {
+            for j in 0..=i {
+                let geometric = g[i].x * (t11 * g[j].x + t12 * g[j].y) + g[i].y * (t12 * g[j].x + t22 * g[j].y);
+                let c = [b[j][0] * c11 + b[j][1] * c12, b[j][0] * c12 + b[j][1] * c22, b[j][2] * c33];
+                let material = outer(b[i][0], c[0]) + outer(b[i][1], c[1]) + outer(b[i][2], c[2]);
+                block(i, j, (material + DMat3::from_diagonal(DVec3::splat(geometric))) * self.area);
+            }
+        }
+        g.map(|g| p1 * g.x + p2 * g.y)
+    }
+}
+
+/// The tensile part of a symmetric 2×2 stress (s11, s22, s12): negative eigenvalues set to zero.
+fn tension([s11, s22, s12]: [f64; 3]) -> [f64; 3] {
+    let mean = 0.5 * (s11 + s22);
+    let half = 0.5 * (s11 - s22);
+    let radius = (half * half + s12 * s12).sqrt();
+    let (high, low) = (mean + radius, mean - radius);
+    if low >= 0.0 {
+        return [s11, s22, s12];
+    }
+    if high <= 0.0 {
+        return [0.0; 3];
+    }
+    // Eigenvector of `high`: the better conditioned of the two rows.
+    let v = if half >= 0.0 { DVec2::new(half + radius, s12) } else { DVec2::new(s12, radius - half) };
+    let v = v.normalize_or(DVec2::X);
+    [high * v.x * v.x, high * v.y * v.y, high * v.x * v.y]
+}

@@ -1,0 +1,34 @@
+//! Quasi-static cloth: a garment draped on the canonical body, and brought from there to any pose.
+//! Implicit Newton on the true elastic energy, f64, fixed order of sums: the same pose gives the same bits.
+
+mod burial;
+mod cloth;
+mod collider;
+mod contact;
+mod cover;
+mod crossing;
+mod distance;
+mod elastic;
+mod grain;
+mod material;
+mod matrix;
+mod neighbourhood;
+mod newton;
+mod outcome;
+mod outer_skin;
+mod posed;
+mod proximity;
+mod settings;
+mod simulator;
+mod transport;
+
+#[cfg(test)]
+mod tests;
+
+pub use distance::{BodyDistance, felt};
+pub use elastic::{Elastic, Hinge, Membrane, Triangle};
+pub use material::{Fabric, GRAVITY, Material};
+pub use outcome::{Outcome, Status};
+pub use outer_skin::{covering, outer_skin};
+pub use settings::Settings;
+pub use simulator::Simulator;

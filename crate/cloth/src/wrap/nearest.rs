@@ -1,0 +1,94 @@
+//! The face of a mesh nearest to a point, by a bounding volume tree.
+
+use ctsn_rig::mesh::{self, Mesh, triangle};
+use glam::DVec3;
+use parry3d_f64::bounding_volume::Aabb;
+use parry3d_f64::math::Vector;
+use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhNode};
+
+/// Bounding box of a triangle.
+pub(crate) fn bounds(corners: [DVec3; 3]) -> Aabb {
+    let [low, high] = mesh::bounds(corners);
+    Aabb::new(Vector::from_array(low.to_array()), Vector::from_array(high.to_array()))
+}
+
+/// Squared distance of a point from the box of a node, square metres.
+pub(crate) fn squared_distance(node: &BvhNode, point: DVec3) -> f64 {
+    let (low, high, p) = (node.mins(), node.maxs(), point.to_array());
+    let gap = |k: usize| (low[k] - p[k]).max(p[k] - high[k]).max(0.0);
+    gap(0) * gap(0) + gap(1) * gap(1) + gap(2) * gap(2)
+}
+
+/// A mesh to search in.
+pub(crate) struct Faces<'a> {
+    mesh: &'a Mesh,
+    tree: Bvh,
+}
+
+impl<'a> Faces<'a> {
+    /// The faces of `mesh`.
+    pub fn new(mesh: &'a Mesh) -> Self {
+        let boxes: Vec<Aabb> = mesh.corners().map(bounds).collect();
+        Self { mesh, tree: Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes) }
+    }
+
+    /// The nearest face, the first of equals in the mesh's order, and its closest point, metres; none in an empty mesh.
+    pub fn nearest(&self, point: DVec3) -> Option<(usize, DVec3)> {
+        let foot = |face: u32| {
+            let corners = self.mesh.triangles[face as usize].map(|i| self.mesh.positions[i as usize]);
+            triangle::closest_point(point, corners)
+        };
+        // A face without an area may have no closest point.
+        let squared = |face: u32| match foot(face).distance_squared(point) {
+            near if near.is_finite() => near,
+            _ => f64::INFINITY,
+        };
+        let (_, least) =
+            self.tree.find_best(f64::MAX, |node, _| squared_distance(node, point), |face, _| Some(squared(face)))?;
+        // Faces that meet in the closest point are all as near: the tree finds any of them.
+        let reach = 1.000_001 * least.sqrt() + f64::MIN_POSITIVE;
+        let near = bounds([point - reach, point + reach, point]);
+        let nearer = |a: &u32, b: &u32| squared(*a).total_cmp(&squared(*b)).then(a.cmp(b));
+        let face = self.tree.intersect_aabb(&near).min_by(nearer)?;
+        Some((face as usize, foot(face)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A heap of triangles, many of which share corners.
+    fn heap() -> Mesh {
+        let mut rng = fastrand::Rng::with_seed(7);
+        let mut place = || DVec3::new(rng.f64(), rng.f64(), rng.f64());
+        let positions: Vec<DVec3> = (0..60).map(|_| place()).collect();
+        let mut rng = fastrand::Rng::with_seed(8);
+        let triangles = (0..200).map(|_| [0; 3].map(|_: u32| rng.u32(..60))).collect();
+        Mesh { positions, triangles }
+    }
+
+    #[test]
+    fn the_tree_finds_what_looking_at_all_faces_does() {
+        let mesh = heap();
+        let faces = Faces::new(&mesh);
+        let brute = |point: DVec3| {
+            let mut best = (f64::INFINITY, 0, DVec3::ZERO);
+            for (face, corners) in mesh.corners().enumerate() {
+                let foot = triangle::closest_point(point, corners);
+                let squared = foot.distance_squared(point);
+                if squared < best.0 {
+                    best = (squared, face, foot);
+                }
+            }
+            Some((best.1, best.2))
+        };
+        let mut rng = fastrand::Rng::with_seed(9);
+        let around = (0..500).map(|_| 3.0 * DVec3::new(rng.f64(), rng.f64(), rng.f64()) - 1.0);
+        // At the corners several faces are equally near.
+        for point in around.chain(mesh.positions.iter().copied()) {
+            assert_eq!(faces.nearest(point), brute(point), "{point}");
+        }
+        assert_eq!(Faces::new(&Mesh::default()).nearest(DVec3::ZERO), None);
+    }
+}

@@ -1,0 +1,58 @@
+//! Area-weighted vertex normals: the sum of the cross products of the triangles around a vertex, made unit length.
+
+use crate::cpu::{Cpu, Kernel};
+use crate::operation::Normals;
+
+/// +Y, too, where a vertex has more area around it than f32 can hold.
+impl Kernel for Normals<&[f32], &mut [f32], &[u32]> {
+    fn run(self, _: &mut Cpu) {
+        let (positions, normals) = (self.positions.as_chunks::<3>().0, self.normals.as_chunks_mut::<3>().0);
+        normals.fill([0.0; 3]);
+        for triangle in self.triangles.as_chunks::<3>().0 {
+            let [a, b, c] = triangle.map(|i| positions[i as usize]);
+            let (u, v): ([f32; 3], [f32; 3]) =
+                (std::array::from_fn(|i| b[i] - a[i]), std::array::from_fn(|i| c[i] - a[i]));
+            let normal = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+            for i in triangle {
+                let sum = &mut normals[*i as usize];
+                (0..3).for_each(|c| sum[c] += normal[c]);
+            }
+        }
+        for normal in normals {
+            let length = normal.iter().map(|c| c * c).sum::<f32>().sqrt();
+            let told = length > f32::MIN_POSITIVE && length.is_finite();
+            *normal = if told { normal.map(|c| c / length) } else { [0.0, 1.0, 0.0] };
+        }
+    }
+}
+
+#[cfg(feature = "suite")]
+impl crate::suite::Suite for Normals<Vec<f32>, Vec<f32>, Vec<u32>> {
+    /// Of up to 40 triangles around a vertex, most of which cancel out.
+    const TOLERANCE: f64 = 1e-4;
+
+    fn operands(rng: &mut fastrand::Rng) -> Vec<Self> {
+        let mut soup = |n: usize| {
+            let triangles = crate::suite::triangles(rng, n);
+            Self { positions: crate::suite::numbers(rng, 3 * n, 1.0), triangles, normals: vec![0.5; 3 * n] }
+        };
+        let soups = [1, 2, 67, 257].map(&mut soup);
+        let (positions, triangles) = crate::suite::sphere(0.05, 24, 13);
+        let sphere = Self { normals: vec![0.5; positions.len()], positions, triangles };
+        // More area than f32 can hold.
+        let huge = Self { positions: sphere.positions.iter().map(|c| c * 1e22).collect(), ..sphere.clone() };
+        [&soups[..], &[sphere, huge]].concat()
+    }
+
+    fn truth(&self) -> Vec<Option<Vec<f64>>> {
+        let points = crate::suite::points(&self.positions);
+        let mut sums = vec![glam::DVec3::ZERO; points.len()];
+        for triangle in self.triangles.as_chunks::<3>().0 {
+            let [a, b, c] = triangle.map(|i| points[i as usize]);
+            triangle.iter().for_each(|i| sums[*i as usize] += (b - a).cross(c - a));
+        }
+        let told = |sum: &glam::DVec3| sum.length() > f64::from(f32::MIN_POSITIVE) && sum.length() < 1e38;
+        let normal = |sum: &glam::DVec3| if told(sum) { sum.normalize() } else { glam::DVec3::Y };
+        vec![Some(sums.iter().flat_map(|sum| normal(sum).to_array()).collect())]
+    }
+}

@@ -1,0 +1,137 @@
+//! `ctsn simulate`: the truth to learn from.
+
+use super::{bar, file_name, remaining};
+use anyhow::{Result, bail};
+use ctsn_cloth::garment;
+use ctsn_cloth::simulate::{Material, Settings};
+use ctsn_rig::Character;
+use ctsn_rig::gltf;
+use ctsn_train::ground_truth::{Kind, Request, Run, Shard};
+use ctsn_train::report::Report;
+use std::path::{Path, PathBuf};
+
+/// Simulate a garment on every frame of a character's clips
+///
+/// Every pose is simulated on its own: the garment is draped on the canonical pose, carried to the pose along a fixed
+/// path, and relaxed to rest. Poses already in the folder are kept, so an interrupted run continues where it stopped.
+/// At the end a report is written into the folder (report.json) and shown; `ctsn inspect FOLDER` shows it again.
+///
+/// All cores are used; RAYON_NUM_THREADS=2 in the environment keeps it to two. The result does not depend on it.
+///
+/// Many machines can share the work: give each its part with --shard 0/8, 1/8 … 7/8 (in an array job,
+/// $SLURM_ARRAY_TASK_ID/8 or $JOB_COMPLETION_INDEX/8). They may write into one shared folder, or each into its own, to
+/// be copied together: `cp -r shard-*/. data`. The outcome is the same as that of a single run: byte for byte where all
+/// machines run the same program with the same C library and have the same level of SIMD, which the report names
+/// (x86_64 AVX-512, x86_64 AVX2, aarch64 …); elsewhere up to rounding.
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// Rigged character (glTF)
+    pub character: PathBuf,
+    /// Garment, worn in the character's canonical pose (glTF)
+    pub garment: PathBuf,
+    /// Dataset folder
+    #[arg(short, long)]
+    pub output: PathBuf,
+    /// Simulate only part i of N, i from 0 to N - 1
+    #[arg(long, value_name = "i/N", default_value_t = Shard::WHOLE)]
+    pub shard: Shard,
+    #[command(flatten)]
+    pub options: Options,
+}
+
+/// Which poses, of what cloth.
+#[derive(clap::Args, Clone)]
+pub struct Options {
+    /// Poses per second sampled from every clip
+    #[arg(long, default_value_t = 10.0)]
+    pub rate: f64,
+    /// Simulate only this many of the frames, evenly spread over the clips; a greater number adds to them. Default: all
+    #[arg(long, value_name = "N")]
+    pub poses: Option<usize>,
+    /// Simulate this many mixed poses as well: limbs of some training frames on the trunk of another. Variety teaches
+    /// more than further frames of the same motion. A greater number adds to them
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub mixed: usize,
+    /// Clip to use, by name; may be given several times. Default: all
+    #[arg(long = "clip")]
+    pub clips: Vec<String>,
+    #[arg(long, default_value = "cotton", help = format!("Material of the cloth: {}", Material::names()))]
+    pub material: String,
+    /// Simulate this many poses a second time, every joint turned by half a degree, to measure the noise of the truth
+    #[arg(long, value_name = "K", default_value_t = 0)]
+    pub noise_floor: usize,
+    /// Keep poses with at most this share of the vertices inside the body where it passes into itself (an upper arm
+    /// into the chest, say): no place is outside there. With 0, few poses are kept of wide motion on slim limbs
+    #[arg(long, value_name = "SHARE", default_value_t = 0.03)]
+    pub pinched: f64,
+}
+
+pub fn run(arguments: &Arguments) -> Result<()> {
+    let Arguments { options, output, shard, .. } = arguments;
+    let material = Material::named(&options.material)?;
+    let character = character(&arguments.character, options)?;
+    let (garment, warnings) = garment::load(&arguments.garment, &character)?;
+    warnings.iter().for_each(|warning| eprintln!("  {}: {warning}", arguments.garment.display()));
+    let names = [file_name(&arguments.character), file_name(&arguments.garment)];
+    println!("{} on {}: {} vertices", names[1], names[0], garment.mesh.positions.len());
+    let request = Request {
+        character: &character,
+        garment: &garment,
+        names: names.each_ref().map(String::as_str),
+        material: (&options.material, material),
+        settings: Settings { attached: garment.pins.clone(), pinched: options.pinched, ..Settings::default() },
+        shard: *shard,
+        poses: options.poses,
+        mixed: options.mixed,
+        twins: options.noise_floor,
+    };
+    let work = Run::new(request, output)?;
+    println!("{} poses to simulate, {} found done", work.left(), work.found);
+    follow(&work, &character)?;
+    let report = Report::new(output)?;
+    report.write(output)?;
+    println!("{report}");
+    if report.kept == 0 && report.missing < report.frames {
+        bail!("no pose converged; the reasons stand above");
+    }
+    Ok(())
+}
+
+/// Reads a character with the chosen clips.
+fn character(path: &Path, options: &Options) -> Result<Character> {
+    if !(options.rate > 0.0 && options.rate <= 1000.0) {
+        bail!("--rate: wanted more than 0 and at most 1000 poses per second, found {}", options.rate);
+    }
+    let mut character = gltf::read_character(path, options.rate)?;
+    if let Some(name) = options.clips.iter().find(|name| character.clips.iter().all(|clip| clip.name != **name)) {
+        let known: Vec<_> = character.clips.iter().map(|clip| clip.name.as_str()).collect();
+        bail!("{}: no clip {name}; it has: {}", path.display(), known.join(", "));
+    }
+    character.clips.retain(|clip| options.clips.is_empty() || options.clips.contains(&clip.name));
+    Ok(character)
+}
+
+/// Simulates with a progress bar; in a log file, with a line now and then.
+fn follow(work: &Run, character: &Character) -> Result<()> {
+    let bar = bar(work.left(), "simulate");
+    let every = (work.left() as u64 / 20).max(1);
+    work.simulate(|record, kind| {
+        bar.inc(1);
+        if let Some(reason) = &record.rejected {
+            let frame = record.frame;
+            let pose = match kind {
+                Kind::Frame => format!("{} frame {frame}", character.clips[record.clip].name),
+                Kind::Twin => format!("{} frame {frame} (twin)", character.clips[record.clip].name),
+                Kind::Mixed => format!("mixed pose {frame}"),
+            };
+            // `println` of a bar that is not drawn (in a log file, say) prints nothing.
+            bar.suspend(|| eprintln!("  left out: {pose}: {reason}"));
+        }
+        if bar.is_hidden() && bar.position().is_multiple_of(every) {
+            let left = remaining(bar.elapsed(), bar.position(), work.left() as u64);
+            eprintln!("  {} of {} poses, {left} left", bar.position(), work.left());
+        }
+    })?;
+    bar.finish_and_clear();
+    Ok(())
+}

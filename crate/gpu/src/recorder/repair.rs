@@ -1,0 +1,102 @@
+//! The operations of the repair of penetration as dispatches.
+
+use super::{Id, IndexId, Record, Recorder};
+use crate::pack;
+use crate::recording::Operand;
+use ctsn_core::cpu::repair::{bury, closest, collide, eight, settle, spread};
+use ctsn_core::operation::{Bury, Collide, Settle, Spread};
+use ctsn_shaders as shaders;
+
+impl Record for Bury<Id, Id> {
+    fn record(self, recorder: &mut Recorder) {
+        let Self { posed, normals, areas, exposed } = self;
+        let operands = [
+            recorder.rows(posed, 3, 3),
+            recorder.rows(normals, 3, 3),
+            recorder.rows(areas, 1, 1),
+            recorder.rows(exposed, 3, 3),
+        ];
+        let vertices = recorder.length(areas);
+        let range = bury::buriable(vertices);
+        let params = shaders::Bury {
+            vertices: vertices as u32,
+            first: range.start as u32,
+            end: range.end as u32,
+            above: bury::ABOVE,
+            least: bury::least(),
+            away: bury::AWAY,
+        };
+        recorder.dispatch(&shaders::BURY, params, &operands, [range.len().max(1), 1], exposed);
+    }
+}
+
+impl Record for Collide<Id, Id, IndexId> {
+    fn record(self, recorder: &mut Recorder) {
+        let Self { exposed, normals, offsets, corners, seeds, positions, push } = self;
+        let (operands, params) = search(recorder, [exposed, normals, positions, push], [offsets, corners, seeds]);
+        let n = params.vertices as usize;
+        recorder.dispatch(&shaders::COLLIDE, params, &operands, [n, 1], exposed);
+    }
+}
+
+impl Record for Spread<Id, Id, IndexId> {
+    fn record(self, recorder: &mut Recorder) {
+        let Self { offsets, neighbours, push, before, after } = self;
+        let n = recorder.length(push) / 3;
+        let operands = [
+            recorder.indexed(offsets),
+            recorder.indexed(neighbours),
+            recorder.rows(push, 3, 3),
+            recorder.rows(before, 3, 3),
+            recorder.rows(after, 3, 3),
+        ];
+        let params = shaders::Spread { vertices: n as u32, follow: spread::FOLLOW };
+        recorder.dispatch(&shaders::SPREAD, params, &operands, [n, 1], after);
+    }
+}
+
+impl Record for Settle<Id, Id, IndexId> {
+    fn record(self, recorder: &mut Recorder) {
+        let Self { exposed, normals, offsets, corners, seeds, displacement, positions } = self;
+        let buffers = [exposed, normals, displacement, positions];
+        let (operands, params) = search(recorder, buffers, [offsets, corners, seeds]);
+        let n = params.vertices as usize;
+        recorder.dispatch(&shaders::SETTLE, params, &operands, [n, 1], exposed);
+    }
+}
+
+/// A search over the exposed body: its positions and normals, a number per coordinate of the cloth, and such numbers
+/// that are written.
+fn search(
+    recorder: &mut Recorder,
+    [exposed, normals, cloth, output]: [Id; 4],
+    [offsets, corners, seeds]: [IndexId; 3],
+) -> ([Operand; 7], shaders::Collide) {
+    let n = recorder.length(cloth) / 3;
+    let width = recorder.indices(seeds).len() / n;
+    let operands = [
+        recorder.rows(exposed, 3, 3),
+        recorder.rows(normals, 3, 3),
+        recorder.indexed(offsets),
+        recorder.indexed(corners),
+        recorder.pack(("seeds", seeds.0), |it| pack::slots(it.indices(seeds), width)),
+        recorder.rows(cloth, 3, 3),
+        recorder.rows(output, 3, 3),
+    ];
+    let params = shaders::Collide {
+        vertices: n as u32,
+        seeds: width as u32,
+        steps: closest::STEPS as u32,
+        gap: closest::GAP,
+        depth: closest::DEPTH,
+        steepest: closest::STEEPEST,
+        sliver: eight::SLIVER,
+        folded: closest::FOLDED,
+        away: bury::AWAY,
+        landmarks: collide::LANDMARKS.min(recorder.length(exposed) / 3) as u32,
+        free: collide::FREE,
+        elsewhere: collide::ELSEWHERE,
+        again: settle::AGAIN,
+    };
+    (operands, params)
+}

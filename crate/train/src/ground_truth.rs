@@ -1,0 +1,162 @@
+//! Simulates the frames of a character's clips into a dataset folder. Poses run in parallel and are written as soon as
+//! they are done; those already there are skipped. The result does not depend on order, threads or shards; of the
+//! machine, only on its [`level`](level::level).
+
+mod level;
+pub mod noise;
+mod request;
+mod shard;
+#[cfg(test)]
+mod tests;
+mod timing;
+
+use crate::dataset::{Record, Sample, Setup, Split, mixed_path, pose_path, twin_path};
+use crate::{Error, Result};
+use ctsn_cloth::simulate::Simulator;
+use ctsn_rig::mixed::{has_limbs, mixed};
+use ctsn_rig::path::is_sound;
+use ctsn_rig::{Character, Pose, joints, numbers, vertices};
+use glam::DVec3;
+use rayon::prelude::*;
+pub use request::Request;
+pub use shard::Shard;
+use std::path::{Path, PathBuf};
+pub use timing::Log;
+use timing::{Stopwatch, Timing};
+
+/// Kinds of poses.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// A frame of a clip.
+    Frame,
+    /// A frame a little changed, for the noise floor.
+    Twin,
+    /// Limbs of several frames, [`mixed`]; its number stands where others have a frame number.
+    Mixed,
+}
+
+/// A pose to simulate, and where it goes.
+struct Task {
+    kind: Kind,
+    clip: usize,
+    frame: usize,
+    path: PathBuf,
+}
+
+/// One run: what is left to do in a folder.
+pub struct Run<'a> {
+    request: Request<'a>,
+    folder: PathBuf,
+    simulator: Simulator,
+    /// `T_C` as the setup keeps it, metres [n].
+    template: Vec<DVec3>,
+    tasks: Vec<Task>,
+    /// Poses, twins and mixed poses of this shard that were there already.
+    pub found: usize,
+}
+
+impl<'a> Run<'a> {
+    /// Prepares dataset `folder`, draping the garment unless that was done before.
+    pub fn new(request: Request<'a>, folder: &Path) -> Result<Self> {
+        let poses: usize = request.character.clips.iter().map(|clip| clip.poses.len()).sum();
+        if poses == 0 {
+            let name = request.names[0];
+            let reason = format!("{name} has no clip, wanted at least one: there is no pose to simulate");
+            return Err(Error::Simulation(reason));
+        }
+        let mixable = || has_limbs(request.character) && !learned(request.character).is_empty();
+        if request.mixed > 0 && !mixable() {
+            let name = request.names[0];
+            let reason = format!(
+                "{name} has nothing to mix: wanted limbs, two chains of joints at least, and frames to learn from"
+            );
+            return Err(Error::Simulation(reason));
+        }
+        let settings = request.settings.clone();
+        let simulator = Simulator::new(request.character, request.garment, request.material.1, settings)?;
+        let mut wanted = request.setup();
+        let setup = match Setup::read(folder)? {
+            Some(found) => {
+                found.check_same(&wanted, folder)?;
+                found
+            }
+            None => {
+                wanted.template = numbers(&simulator.drape()?);
+                wanted.write(folder)?;
+                wanted
+            }
+        };
+        let template = vertices(&setup.template);
+        let mut tasks = tasks(&request, poses, folder);
+        let all = tasks.len();
+        tasks.retain(|task| !task.path.exists());
+        Ok(Self { found: all - tasks.len(), request, folder: folder.to_owned(), simulator, template, tasks })
+    }
+
+    /// Poses, twins and mixed poses left to simulate.
+    pub fn left(&self) -> usize {
+        self.tasks.len()
+    }
+
+    /// Simulates what is left. `progress(record, kind)` is called after every pose.
+    pub fn simulate(&self, progress: impl Fn(&Record, Kind) + Sync) -> Result<()> {
+        let timing = Timing::open(&self.folder, self.request.shard)?;
+        let character = self.request.character;
+        let learned = learned(character);
+        let run = |task: &Task| -> Result<()> {
+            let start = Stopwatch::start();
+            let frame = || &character.clips[task.clip].poses[task.frame];
+            let pose = match task.kind {
+                Kind::Frame => frame().clone(),
+                Kind::Twin => noise::turned(character, frame(), task.clip, task.frame),
+                Kind::Mixed => mixed(character, &learned, task.frame),
+            };
+            let outcome = self.simulator.simulate(&self.template, &pose);
+            let record = Record::new(task.clip, task.frame, &outcome);
+            let sample = Sample { record, joints: joints(&pose), truth: numbers(&outcome.positions) };
+            sample.write(&task.path)?;
+            timing.add(&sample.record, start.elapsed())?;
+            progress(&sample.record, task.kind);
+            Ok(())
+        };
+        self.tasks.par_iter().with_max_len(1).try_for_each(run)
+    }
+}
+
+/// The frames to train on. Mixed poses are made of these alone, so that unseen frames stay unseen.
+fn learned(character: &Character) -> Vec<&Pose> {
+    let clips = &character.clips;
+    let train =
+        |clip: usize, frame: usize| Split::of(clips.len(), clip, frame, clips[clip].poses.len()) == Split::Train;
+    let frames = |clip: usize| clips[clip].poses.iter().enumerate().filter(move |(frame, _)| train(clip, *frame));
+    let frames = (0..clips.len()).flat_map(frames).map(|(_, pose)| pose);
+    frames.filter(|pose| is_sound(character, pose)).collect()
+}
+
+/// The poses and twins of the request's shard, in [`order`], then its mixed poses.
+fn tasks(request: &Request, poses: usize, folder: &Path) -> Vec<Task> {
+    let clips = request.character.clips.iter().enumerate();
+    let frames: Vec<_> = clips.flat_map(|(clip, sampled)| (0..sampled.poses.len()).map(move |f| (clip, f))).collect();
+    let chosen = order(poses).into_iter().take(request.poses.unwrap_or(poses)).enumerate();
+    let mut tasks = Vec::new();
+    for (index, at) in chosen.filter(|(index, _)| request.shard.holds(*index)) {
+        let (clip, frame) = frames[at];
+        tasks.push(Task { kind: Kind::Frame, clip, frame, path: pose_path(folder, clip, frame) });
+        if index < request.twins {
+            tasks.push(Task { kind: Kind::Twin, clip, frame, path: twin_path(folder, clip, frame) });
+        }
+    }
+    let mixed = |frame| Task { kind: Kind::Mixed, clip: 0, frame, path: mixed_path(folder, frame) };
+    tasks.extend((0..request.mixed).filter(|number| request.shard.holds(*number)).map(mixed));
+    tasks
+}
+
+/// Indices below `count`, ordered so that the first few, however many, are evenly spread: by the fractional part of
+/// index times golden ratio. So more poses extend fewer, an interrupted run has done some of every clip, and no gait is
+/// always met at the same phase.
+fn order(count: usize) -> Vec<usize> {
+    const GOLDEN: u32 = 0x9E37_79B9;
+    let mut order: Vec<usize> = (0..count).collect();
+    order.sort_by_key(|index| (*index as u32).wrapping_mul(GOLDEN));
+    order
+}

@@ -1,0 +1,125 @@
+//! What training minimises: a weighted sum of losses, one file each. The learning curve, the checkpoint's key and the
+//! watch for divergence follow from [`LOSSES`]; docs/extending.md says how to add one. Positions are metres in the body
+//! frame, y up. network.md §6.
+
+mod coarse;
+mod distance;
+mod fine;
+mod penetration;
+
+use crate::Result;
+use crate::dataset::Setup;
+use crate::training::Variant;
+use ctsn_core::model::HostModel;
+use ctsn_core::pose::BodyFrame;
+
+/// Every loss.
+pub const LOSSES: &[Term] = &[coarse::COARSE, fine::FINE, penetration::PENETRATION];
+
+/// One term of the sum: what the list tells of a loss.
+#[derive(Clone, Copy, Debug)]
+pub struct Term {
+    /// Its column in the learning curve is `NAME_loss`.
+    pub name: &'static str,
+    /// What the legend of a chart calls it.
+    pub title: &'static str,
+    /// Unit of its value: `m`, `J`.
+    pub unit: &'static str,
+    /// What one unit counts in the sum.
+    pub weight: f32,
+    /// Other constants of it that decide what is learned. With name and weight they are part of the checkpoint's key.
+    pub constants: &'static [f32],
+    /// What it reads of a simulated pose, coarse before whole; its value is that of the last.
+    pub simulated: &'static [Prediction],
+    /// What it reads of a pose that nobody simulated, in the same order.
+    pub unsimulated: &'static [Prediction],
+    /// Makes it, one for each thread.
+    pub new: fn(&Scene) -> Made,
+}
+
+/// A loss that was made; `None` where the training has nothing for it to do.
+pub type Made = Result<Option<Box<dyn Loss>>>;
+
+/// A prediction of the network.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Prediction {
+    /// By the skeleton stream alone. The whole one where an ablation leaves one stream.
+    Coarse,
+    /// By all that the training runs.
+    Whole,
+}
+
+/// What a loss is made for.
+#[derive(Clone, Copy)]
+pub struct Scene<'a> {
+    /// The model before its first step.
+    pub model: &'a HostModel,
+    /// Cloth, body, joints, fabric.
+    pub setup: &'a Setup,
+    /// The parts of the network that learn.
+    pub variant: Variant,
+}
+
+/// A loss: a number of a prediction, and its gradient.
+pub trait Loss: Send {
+    /// What it wants to keep of a pose's truth [n, 3]; made once, before training.
+    fn target(&self, _truth: &[f32]) -> Vec<f32> {
+        Vec::new()
+    }
+
+    /// Looks at a pose, before the predictions of it.
+    fn pose(&mut self, _body_frame: &BodyFrame) {}
+
+    /// The value of `predicted` [n, 3]; its gradient times `scale` is added to `gradient` [n, 3]. `target` is what
+    /// [`Self::target`] made, empty where nobody simulated the pose.
+    fn value(&mut self, predicted: &[f32], target: &[f32], scale: f32, gradient: &mut [f32]) -> f32;
+}
+
+impl Term {
+    /// The predictions it reads of a pose.
+    pub fn reads(&self, is_simulated: bool) -> &'static [Prediction] {
+        if is_simulated { self.simulated } else { self.unsimulated }
+    }
+}
+
+/// The losses of one training, in the list's order; one for each thread.
+pub(crate) struct Losses(Vec<(Term, Box<dyn Loss>)>);
+
+impl Losses {
+    /// Those of `terms` that have something to do.
+    pub fn new(terms: &[Term], scene: &Scene) -> Result<Self> {
+        let made = terms.iter().map(|term| Ok((term.new)(scene)?.map(|loss| (*term, loss))));
+        Ok(Self(made.filter_map(Result::transpose).collect::<Result<_>>()?))
+    }
+
+    /// What the list tells of them.
+    pub fn terms(&self) -> Vec<Term> {
+        self.0.iter().map(|(term, _)| *term).collect()
+    }
+
+    /// What each keeps of a truth [n, 3].
+    pub fn targets(&self, truth: &[f32]) -> Vec<Vec<f32>> {
+        self.0.iter().map(|(_, loss)| loss.target(truth)).collect()
+    }
+
+    /// Shows them a pose.
+    pub fn pose(&mut self, body_frame: &BodyFrame) {
+        self.0.iter_mut().for_each(|(_, loss)| loss.pose(body_frame));
+    }
+
+    /// Each with its number and what the list tells of it.
+    pub fn each(&mut self) -> impl Iterator<Item = (usize, &Term, &mut Box<dyn Loss>)> {
+        self.0.iter_mut().enumerate().map(|(i, (term, loss))| (i, &*term, loss))
+    }
+}
+
+/// The weighted sum of the values' magnitudes: what must not explode. An energy may be negative.
+pub(crate) fn magnitude(terms: &[Term], values: &[f32]) -> f32 {
+    terms.iter().zip(values).map(|(term, value)| term.weight * value.abs()).sum()
+}
+
+/// Names and values, for messages.
+pub(crate) fn told(terms: &[Term], values: &[f32]) -> String {
+    let each = terms.iter().zip(values).map(|(term, value)| format!("{} {value} {}", term.name, term.unit));
+    each.collect::<Vec<_>>().join(", ")
+}

@@ -1,0 +1,58 @@
+//! Checkpoints: parameters, moments, the best parameters and the learning curve. Training resumed from one goes on as
+//! if it had not been interrupted.
+
+use super::{Trainer, unsimulated};
+use crate::{Error, Result};
+use ctsn_core::file::{Tensor, Tensors};
+use ctsn_rig::file::{tensors, write};
+use std::path::Path;
+use std::time::Instant;
+
+impl Trainer {
+    /// Writes a checkpoint.
+    pub fn save(&self, path: &Path) -> Result<()> {
+        let mut file = Tensors::default();
+        file.metadata.insert("settings".to_owned(), self.key());
+        let past = serde_json::to_string(&(self.untrained, self.first, &self.curve));
+        file.metadata.insert("curve".to_owned(), past.map_err(|error| Error::Training(error.to_string()))?);
+        self.parameters.save(&mut file);
+        self.hypernetwork.iter().for_each(|network| network.parameters.save(&mut file));
+        for ((name, _), values) in self.parameters.each().zip(&self.best) {
+            file.tensors.insert(format!("{name}.best"), Tensor::f32(&[values.len()], values));
+        }
+        write(path, &file.to_bytes())
+    }
+
+    /// Goes on from a checkpoint of the same training.
+    pub fn resume(&mut self, path: &Path) -> Result<()> {
+        let wrong = |reason: String| Error::File { path: path.to_owned(), reason };
+        let file = tensors(path)?;
+        if file.metadata.get("settings") != Some(&self.key()) {
+            return Err(wrong("is a checkpoint of another training; delete it to start anew".to_owned()));
+        }
+        let past = file.metadata.get("curve").and_then(|text| serde_json::from_str(text).ok());
+        (self.untrained, self.first, self.curve) = past.ok_or_else(|| wrong("holds no learning curve".to_owned()))?;
+        let named = |error: Error| wrong(error.to_string());
+        self.parameters.load(&file).map_err(named)?;
+        if let Some(network) = &mut self.hypernetwork {
+            network.parameters.load(&file).map_err(named)?;
+            network.make(&mut self.parameters);
+        }
+        let best = |(name, values): (&str, &[f32])| {
+            let stored = file.f32(&format!("{name}.best"), &[Some(values.len())]);
+            stored.map(|stored| stored.0).map_err(|error| wrong(error.to_string()))
+        };
+        self.best = self.parameters.each().map(best).collect::<Result<_>>()?;
+        self.epoch = self.curve.len();
+        self.started = (Instant::now(), self.curve.last().map_or(0.0, |row| row.seconds));
+        Ok(())
+    }
+
+    /// What two trainings must have in common to go on as one, and by which their models are the same.
+    pub fn key(&self) -> String {
+        let term = |term: &crate::loss::Term| format!("{} {} {:?}", term.name, term.weight, term.constants);
+        let terms: Vec<String> = self.terms.iter().map(term).collect();
+        let (settings, terms, each) = (self.settings, terms.join(" "), unsimulated::EACH);
+        format!("{settings:?} {terms} unsimulated {each} start {:016x} data {:016x}", self.start, self.data)
+    }
+}

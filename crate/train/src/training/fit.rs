@@ -1,0 +1,119 @@
+//! Training from the first epoch to the last: validation after every epoch, the best parameters kept, checkpoints, and
+//! the reasons to stop before the end: no gain, no time left, divergence.
+
+use super::item::Item;
+use super::step::Worker;
+use super::{Trainer, curve};
+use crate::dataset::Sample;
+use crate::loss::{magnitude, told};
+use crate::{Error, Result};
+use curve::Row;
+use rayon::prelude::*;
+use std::path::PathBuf;
+
+/// Epochs between checkpoints.
+const CHECKPOINT: usize = 5;
+/// Losses this many times those of the first step have exploded.
+const EXPLOSION: f32 = 10.0;
+
+/// Where a training leaves its traces.
+#[derive(Clone, Debug)]
+pub struct Files {
+    /// Checkpoint, to go on from after an interruption.
+    pub checkpoint: PathBuf,
+    /// Learning curve (CSV).
+    pub curve: PathBuf,
+}
+
+/// Why a training ended.
+#[derive(Debug)]
+pub enum End {
+    /// All epochs done, or the time is up.
+    Done,
+    /// No better validation error for so many epochs as the settings' patience.
+    NoGain,
+    /// The loss was no number any more, or exploded.
+    Diverged(Error),
+}
+
+impl Trainer {
+    /// Trains to the end, from wherever it stands; `progress(trainer, row)` after every epoch. [`Self::best`] is the
+    /// outcome.
+    pub fn fit(&mut self, validation: &[&Sample], files: &Files, mut progress: impl FnMut(&Self, &Row)) -> Result<End> {
+        while !self.ended() {
+            if self.best_epoch().is_some_and(|best| self.epoch - best.epoch >= self.settings.patience) {
+                return Ok(End::NoGain);
+            }
+            let row = match self.round(validation) {
+                Err(error @ Error::Diverged(_)) => return Ok(End::Diverged(error)),
+                row => row?,
+            };
+            curve::write(&files.curve, &self.curve)?;
+            if self.epoch.is_multiple_of(CHECKPOINT) {
+                self.save(&files.checkpoint)?;
+            }
+            progress(self, &row);
+        }
+        Ok(End::Done)
+    }
+
+    /// One epoch and its validation, noted in the curve.
+    pub(super) fn round(&mut self, validation: &[&Sample]) -> Result<Row> {
+        let untrained = match self.untrained {
+            Some(error) => error,
+            None => self.validate(validation)?.0,
+        };
+        self.untrained = Some(untrained);
+        let losses = self.epoch(|_, _, _| {})?;
+        let (distance, normal) = self.validate(validation)?;
+        let first = self.first.unwrap_or(f32::INFINITY);
+        if magnitude(&self.terms, &losses) > EXPLOSION * first || !distance.is_finite() {
+            let told = told(&self.terms, &losses);
+            return Err(Error::Diverged(format!(
+                "epoch {}: {told}; validation error {distance} m, {untrained} m before training",
+                self.epoch
+            )));
+        }
+        let rate = self.rate(self.epoch * self.steps());
+        let losses = self.terms.iter().map(|term| term.name.to_owned()).zip(losses).collect();
+        let row = Row { epoch: self.epoch, losses, distance, normal, rate, seconds: self.seconds() };
+        if self.best_epoch().is_none_or(|best| distance < best.distance) {
+            self.best = self.parameters.each().map(|(_, values)| values.to_vec()).collect();
+        }
+        self.curve.push(row.clone());
+        Ok(row)
+    }
+
+    /// Mean E_dist (metres) and E_norm (degrees) of the model as it stands, on `samples`. network.md §7.
+    pub fn validate(&mut self, samples: &[&Sample]) -> Result<(f32, f32)> {
+        let (recording, model, workers) = (&self.recording, &self.model, self.workers.len());
+        let shared = &self.parameters.shared;
+        let run = |(number, worker): (usize, &mut Worker)| {
+            let compare = |sample: &&Sample| Item::compare(model, sample, recording, shared, &mut worker.lane);
+            samples.iter().skip(number).step_by(workers).map(compare).collect()
+        };
+        let errors = self.workers.par_iter_mut().enumerate().map(run).collect::<Result<Vec<Vec<(f64, f64)>>>>()?;
+        // Summed in the samples' order, whatever the number of threads.
+        let ordered = || (0..samples.len()).map(|i| errors[i % workers][i / workers]);
+        let mean = |total: f64| (total / samples.len() as f64) as f32;
+        Ok((mean(ordered().map(|error| error.0).sum()), mean(ordered().map(|error| error.1).sum())))
+    }
+
+    /// The epoch with the least E_dist on the validation slice.
+    pub fn best_epoch(&self) -> Option<&Row> {
+        // The first of equals, as in `round`.
+        self.curve.iter().min_by(|a, b| a.distance.total_cmp(&b.distance))
+    }
+
+    /// Whether the epochs are done or the time is up: an epoch that would end later than half its time past the budget
+    /// is not begun.
+    fn ended(&self) -> bool {
+        match self.settings.budget {
+            None => self.epoch >= self.settings.epochs,
+            Some(budget) => {
+                let seconds = self.seconds();
+                seconds + 0.5 * seconds / self.epoch.max(1) as f64 >= budget.as_secs_f64()
+            }
+        }
+    }
+}
