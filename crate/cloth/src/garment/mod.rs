@@ -4,6 +4,7 @@
 
 mod check;
 mod curve;
+mod draft;
 mod drape;
 mod fall;
 mod figure;
@@ -25,6 +26,8 @@ use kind::Preset;
 use opening::{Bare, Opening};
 use pattern::{Pattern, pattern};
 
+#[cfg(test)]
+mod kind_test;
 #[cfg(test)]
 mod obstacle_test;
 #[cfg(test)]

@@ -43,9 +43,9 @@ pub struct Description {
 pub struct Setup {
     /// Names and joints.
     pub description: Description,
-    /// The garment before it was draped [n, 3].
+    /// The garment as it was cut, before it was draped: without strain [n, 3].
     pub garment: Vec<f32>,
-    /// `T_C`: the garment at rest on the canonical body [n, 3].
+    /// `T_C`: the garment draped on the canonical body, stretched by its weight [n, 3].
     pub template: Vec<f32>,
     /// Cloth triangles [t, 3].
     pub triangles: Vec<u32>,

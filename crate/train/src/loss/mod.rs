@@ -82,6 +82,12 @@ impl Term {
     }
 }
 
+/// What of `terms` decides what is learned: part of the key of a checkpoint, and of what a study's outcome is made of.
+pub(crate) fn key(terms: &[Term]) -> String {
+    let one = |term: &Term| format!("{} {} {:?}", term.name, term.weight, term.constants);
+    terms.iter().map(one).collect::<Vec<_>>().join(" ")
+}
+
 /// The losses of one training, in the list's order; one for each thread.
 pub(crate) struct Losses(Vec<(Term, Box<dyn Loss>)>);
 

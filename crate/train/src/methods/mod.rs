@@ -1,7 +1,7 @@
 //! The paper's comparisons on one dataset. Every way to predict is trained by the same optimiser on the same poses, and
-//! judged on the same unseen ones. The losses are the paper's without that of penetration, since the models of a study
-//! have no body. Paper § "Comparisons", "Ablation Experiments". Every training leaves its outcome in a file, so that an
-//! interrupted study continues where it stopped.
+//! judged on the same unseen ones. The losses are all that training has; that of penetration has nothing to do, since the
+//! models of a study have no body. Paper § "Comparisons", "Ablation Experiments". Every training leaves its outcome in a
+//! file, so that an interrupted study continues where it stopped.
 
 mod deepsd;
 mod flops;
@@ -12,7 +12,7 @@ mod tests;
 
 use crate::dataset::{Dataset, Sample, Split, digest, fingerprint};
 use crate::judging::{Errors, Judge, predictions, unseen};
-use crate::loss::LOSSES;
+use crate::loss::{self, LOSSES};
 use crate::training::hypernetwork::Hypernetwork;
 use crate::training::{End, Files, Row, Settings, Slices, Trainer, Variant, slices};
 use crate::{Error, Result};
@@ -132,8 +132,10 @@ impl<'a> Study<'a> {
         let settings = Settings { variant: entry.method.variant(), ..self.settings };
         let of = |samples: &[&Sample]| fingerprint(&self.dataset.setup, samples);
         let data = [of(&self.slices.train)?, of(&self.slices.validation)?, of(&self.unseen)?];
-        let (method, title, poses) = (&entry.method, self.title(), self.poses());
-        Ok(format!("{method:?}, {settings:?}, {title}, poses {poses:?}, start {start:016x}, data {data:016x?}"))
+        let (method, title, poses, losses) = (&entry.method, self.title(), self.poses(), loss::key(LOSSES));
+        Ok(format!(
+            "{method:?}, {settings:?}, {losses}, {title}, poses {poses:?}, start {start:016x}, data {data:016x?}"
+        ))
     }
 
     /// Bytes of the file; for a form that makes its basis from fewer numbers, bytes of those.

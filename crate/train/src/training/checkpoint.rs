@@ -2,7 +2,7 @@
 //! if it had not been interrupted.
 
 use super::{Trainer, unsimulated};
-use crate::{Error, Result};
+use crate::{Error, Result, loss};
 use ctsn_core::file::{Tensor, Tensors};
 use ctsn_rig::file::{tensors, write};
 use std::path::Path;
@@ -50,9 +50,7 @@ impl Trainer {
 
     /// What two trainings must have in common to go on as one, and by which their models are the same.
     pub fn key(&self) -> String {
-        let term = |term: &crate::loss::Term| format!("{} {} {:?}", term.name, term.weight, term.constants);
-        let terms: Vec<String> = self.terms.iter().map(term).collect();
-        let (settings, terms, each) = (self.settings, terms.join(" "), unsimulated::EACH);
+        let (settings, terms, each) = (self.settings, loss::key(&self.terms), unsimulated::EACH);
         format!("{settings:?} {terms} unsimulated {each} start {:016x} data {:016x}", self.start, self.data)
     }
 }

@@ -8,7 +8,7 @@ mod weights;
 
 use super::*;
 use crate::dataset::{Dataset, Description, Record};
-use crate::loss::Prediction;
+use crate::loss::{LOSSES, Prediction, Term};
 use ctsn_core::cpu::Cpu;
 use ctsn_core::device::Device;
 use ctsn_core::network::{Streams, skin as skinned};
@@ -115,11 +115,17 @@ fn tiny() -> (HostModel, Setup, Vec<Sample>) {
     (model, setup, samples)
 }
 
+/// Losses by name, whatever else is in the list.
+fn named(names: &[&str]) -> Vec<Term> {
+    names.iter().map(|name| *LOSSES.iter().find(|term| term.name == *name).unwrap()).collect()
+}
+
 /// Both losses of distance of one sample and their gradients, as training takes them.
 #[test]
 fn whole_network() {
     let (model, setup, samples) = tiny();
-    let mut trainer = Trainer::new(model, &setup, &[&samples[0]], Settings::default()).unwrap();
+    let distances = named(&["coarse", "fine"]);
+    let mut trainer = Trainer::with(model, None, &distances, &setup, &[&samples[0]], Settings::default()).unwrap();
     let mut rng = fastrand::Rng::with_seed(13);
     let Trainer { recording, workers, items, parameters, .. } = &mut trainer;
     let Worker { lane, losses, .. } = &mut workers[0];
@@ -174,7 +180,8 @@ fn overfits_to_below_a_millimetre() {
     let architecture = Architecture { embedding: 8, basis: 32, layers: 2, heads: 2, features: 16 };
     let model = initial(&setup, &samples, architecture, 1).unwrap();
     let settings = Settings { epochs: 1500, batch: 4, ..Settings::default() };
-    let mut trainer = Trainer::new(model, &setup, &samples, settings).unwrap();
+    let distances = named(&["coarse", "fine"]);
+    let mut trainer = Trainer::with(model, None, &distances, &setup, &samples, settings).unwrap();
     let first = fine(&mut trainer);
     let mut last = first;
     while trainer.epoch < settings.epochs {

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::body::body;
-use crate::loss::{LOSSES, Losses, Scene};
+use crate::loss::{Losses, Scene};
 use crate::synthetic;
 use ctsn_core::model::Storage;
 use ctsn_core::network::skin;
@@ -35,15 +35,16 @@ fn poses_without_truth_teach_to_stay_outside_the_body() {
     // Few of them: many simulated poses teach it by themselves.
     let samples: Vec<&Sample> = samples.iter().take(3).collect();
     let settings = Settings { epochs: 30, batch: 4, ..Settings::default() };
+    let (losses, outside) = (named(&["coarse", "fine", "penetration"]), named(&["penetration"]));
     let train = |unsimulated: bool| {
-        let mut trainer = Trainer::new(model.clone(), &setup, &samples, settings).unwrap();
+        let mut trainer = Trainer::with(model.clone(), None, &losses, &setup, &samples, settings).unwrap();
         if !unsimulated {
             trainer.unsimulated = None;
         }
         (0..settings.epochs).for_each(|_| _ = trainer.round(&samples).unwrap());
         trainer.model()
     };
-    let poses = Unsimulated::new(&model, LOSSES, &setup, &samples, &settings).unwrap().expect("limbs to mix");
+    let poses = Unsimulated::new(&model, &outside, &setup, &samples, &settings).unwrap().expect("limbs to mix");
     let mut unseen = poses.draw(&model, 1_000_000).unwrap();
     // Read as simulated ones are: both streams.
     unseen.iter_mut().for_each(|item| item.targets = Some(vec![Vec::new()]));
@@ -51,7 +52,7 @@ fn poses_without_truth_teach_to_stay_outside_the_body() {
         let (recording, shared, _) = Recording::new(trained, settings.variant, Streams::Both);
         let mut lane = recording.lane(&shared).unwrap();
         let scene = Scene { model: &model, setup: &setup, variant: settings.variant };
-        let mut losses = Losses::new(&LOSSES[2..], &scene).unwrap();
+        let mut losses = Losses::new(&outside, &scene).unwrap();
         let mut loss = |item: &Item| item.learn(&recording, &shared, &mut lane, &mut losses, 1)[0];
         unseen.iter().map(&mut loss).sum::<f32>() / unseen.len() as f32
     };
