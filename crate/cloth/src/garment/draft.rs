@@ -1,13 +1,45 @@
-//! What the patterns are put together from: openings on limbs, hems, waistbands, what hangs, wide sleeves.
+//! A pattern and the pieces it is put together from: openings on limbs, hems, waistbands, what hangs, wide sleeves.
 
 use super::curve::{arc_length, at};
 use super::figure::Figure;
 use super::hang::Hang;
 use super::kind::Preset;
 use super::opening::{Bare, Opening};
-use super::pattern::{Pattern, Sleeve};
 use crate::wrap::Plane;
 use glam::DVec3;
+
+/// A tube around a limb, wider than the limb.
+#[derive(Clone, Debug)]
+pub(super) struct Sleeve {
+    /// Axis, metres.
+    pub path: Vec<DVec3>,
+    /// Radius at every point of the axis, metres.
+    pub radii: Vec<f64>,
+    /// Ends here.
+    pub end: Plane,
+}
+
+/// How a garment is cut on one body.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Pattern {
+    /// Where it stops.
+    pub openings: Vec<Opening>,
+    /// What it does not cover.
+    pub bare: Vec<Bare>,
+    /// Where it falls free.
+    pub hangs: Vec<Hang>,
+    /// Wide sleeves.
+    pub sleeves: Vec<Sleeve>,
+    /// Past the second plane, cloth keeps off the first: trouser legs of thighs that touch.
+    pub gap: Option<[Plane; 2]>,
+}
+
+impl Pattern {
+    /// Room for what hangs and widens, around the covered body, metres.
+    pub fn room(&self, past: f64) -> f64 {
+        past + self.hangs.iter().map(|hang| hang.flare * hang.length).fold(0.0, f64::max)
+    }
+}
 
 /// What every pattern is drawn from.
 pub(super) struct Draft<'a> {

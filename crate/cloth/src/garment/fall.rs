@@ -1,7 +1,7 @@
 //! The field of a garment: the shell around what its pattern covers, with wide sleeves, cloth that falls free and
 //! parted legs.
 
-use super::pattern::{Pattern, Sleeve};
+use super::draft::{Pattern, Sleeve};
 use crate::wrap::{Field, Plane, Solid};
 use glam::DVec3;
 

@@ -19,12 +19,13 @@ mod unwrap;
 use crate::wrap::{self, Piece, Region, Solid};
 use crate::{Error, Result};
 use ctsn_rig::{Character, Garment, Mesh, SkinnedMesh, Surface};
+use draft::Pattern;
 use figure::Figure;
 use glam::DVec3;
 use hang::Hang;
 use kind::Preset;
 use opening::{Bare, Opening};
-use pattern::{Pattern, pattern};
+use pattern::pattern;
 
 #[cfg(test)]
 mod kind_test;

@@ -2,7 +2,7 @@
 //! body. One opening is one boundary loop of the garment.
 
 use super::curve::{arc_length, at};
-use super::draft::Draft;
+use super::draft::{Draft, Pattern};
 use super::figure::Figure;
 use super::hang::Hang;
 use super::kind::{Build, Kind, Preset};
@@ -10,41 +10,8 @@ use super::opening::{Bare, Opening};
 use crate::wrap::{Plane, Region};
 use glam::DVec3;
 
-/// A tube around a limb, wider than the limb.
-#[derive(Clone, Debug)]
-pub(super) struct Sleeve {
-    /// Axis, metres.
-    pub path: Vec<DVec3>,
-    /// Radius at every point of the axis, metres.
-    pub radii: Vec<f64>,
-    /// Ends here.
-    pub end: Plane,
-}
-
-/// How a garment is cut on one body.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Pattern {
-    /// Where it stops.
-    pub openings: Vec<Opening>,
-    /// What it does not cover.
-    pub bare: Vec<Bare>,
-    /// Where it falls free.
-    pub hangs: Vec<Hang>,
-    /// Wide sleeves.
-    pub sleeves: Vec<Sleeve>,
-    /// Past the second plane, cloth keeps off the first: trouser legs of thighs that touch.
-    pub gap: Option<[Plane; 2]>,
-}
-
 /// Radius of a cape's corners, in body extents.
 const CORNER: f64 = 0.03;
-
-impl Pattern {
-    /// Room for what hangs and widens, around the covered body, metres.
-    pub fn room(&self, past: f64) -> f64 {
-        past + self.hangs.iter().map(|hang| hang.flare * hang.length).fold(0.0, f64::max)
-    }
-}
 
 /// The pattern; `past`: metres by which the shell runs on past each opening, so that its end does not bend the cut.
 pub(super) fn pattern(figure: &Figure, kind: Kind, preset: &Preset, loose: f64, past: f64) -> Pattern {

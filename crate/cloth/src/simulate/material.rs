@@ -1,7 +1,6 @@
 //! Fabric constants: what a tensile test, a bias extension test, a cantilever test and a scale would measure.
 //! simulation.md §2.2.
 
-use super::elastic::Membrane;
 use crate::{Error, Result};
 
 /// Acceleration of gravity along -Y, m/s².
@@ -88,13 +87,6 @@ impl Material {
     /// `(D / ρg)^(1/3)` in metres: how far the cloth stands out before its weight bends it.
     pub fn bending_length(&self) -> f64 {
         (self.bending / (self.density * GRAVITY)).cbrt()
-    }
-
-    /// In-plane stiffness of an orthotropic sheet in plane stress.
-    pub(super) fn membrane(&self) -> Membrane {
-        let Self { warp, weft, shear, poisson, .. } = *self;
-        let free = 1.0 - poisson * poisson;
-        Membrane { c11: weft / free, c22: warp / free, c12: poisson * (warp * weft).sqrt() / free, c33: shear }
     }
 
     /// Checks that every constant is finite and in its range.

@@ -4,6 +4,7 @@
 
 use glam::{DMat3, DVec2, DVec3};
 
+use crate::simulate::material::Material;
 use crate::simulate::matrix::outer;
 
 /// In-plane stiffness along the threads, N/m: `S₁₁ = C₁₁G₁₁ + C₁₂G₂₂`, `S₂₂ = C₁₂G₁₁ + C₂₂G₂₂`, `S₁₂ = 2 C₃₃G₁₂`.
@@ -17,6 +18,15 @@ pub struct Membrane {
     pub c12: f64,
     /// `C₃₃`, shear.
     pub c33: f64,
+}
+
+impl Membrane {
+    /// Of an orthotropic sheet in plane stress.
+    pub fn new(material: &Material) -> Self {
+        let Material { warp, weft, shear, poisson, .. } = *material;
+        let free = 1.0 - poisson * poisson;
+        Self { c11: weft / free, c22: warp / free, c12: poisson * (warp * weft).sqrt() / free, c33: shear }
+    }
 }
 
 /// A membrane triangle at rest.

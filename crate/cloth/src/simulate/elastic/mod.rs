@@ -54,7 +54,7 @@ impl Elastic {
             return Err(Error::Garment(format!("vertex {loose} belongs to no triangle")));
         }
         let hinges = hinges(mesh, &triangles, material.bending, shape)?;
-        Ok(Self { masses, triangles, hinges, membrane: material.membrane() })
+        Ok(Self { masses, triangles, hinges, membrane: Membrane::new(material) })
     }
 
     /// Energy of stretch and shear at `x` [n], joules; its gradient, newtons, is added to `gradient` [n].
