@@ -1,4 +1,4 @@
-// Δ[i] = Σ_j w_j B_j[i], T = rest + c·Δ. network.md §2, §3, §4. Twin: crate/core/src/cpu/network/blend.rs
+// Δ[i] = Σ_j w_j B_j[i], T = rest + s·Δ. network.md §2, §3, §4. Twin: crate/core/src/cpu/network/blend.rs
 // One invocation per number: consecutive ones read consecutive vec4 of the basis.
 
 struct Params {
@@ -16,8 +16,8 @@ struct Params {
 // [count, numbers]
 @group(0) @binding(2) var<storage, read> basis: array<vec4<f32>>;
 @group(0) @binding(3) var<storage, read> rest: array<f32>;
-// What the residual is worth in this pose.
-@group(0) @binding(4) var<storage, read> confidence: array<f32>;
+// What the residual counts in this prediction.
+@group(0) @binding(4) var<storage, read> share: array<f32>;
 @group(0) @binding(5) var<storage, read_write> residual: array<f32>;
 @group(0) @binding(6) var<storage, read_write> result: array<f32>;
 
@@ -32,5 +32,5 @@ fn blend(@builtin(global_invocation_id) id: vec3<u32>) {
         sum += dot(weights[row + j], basis[j * params.numbers + id.x]);
     }
     residual[id.x] = sum;
-    result[id.x] = rest[id.x] + confidence[0] * sum;
+    result[id.x] = rest[id.x] + share[0] * sum;
 }

@@ -138,7 +138,7 @@ shaders! {
     ATTEND: Attend, "attend" + ["attend.edge", "gate"], [Read Read Read Read Read Write], [1, 1];
     /// The same without barriers, one invocation per vertex; the last buffer holds ĥ on the way.
     ATTEND_VERTEX: Attend, "attend.vertex" + ["attend.edge", "gate"], [Read Read Read Read Read Write Write], [64, 1];
-    /// Σ_j w_j B_j: weights, basis, rest, confidence -> residual, result.
+    /// Σ_j w_j B_j: weights, basis, rest, share -> residual, result.
     BLEND: Blend, "blend" + [], [Read Read Read Read Write Write], [64, 1];
     /// Joints, inverse bind, standard -> transforms, pose vector.
     BODY_FRAME: BodyFrame, "body_frame" + [], [Read Read Read Write Write], [64, 1];

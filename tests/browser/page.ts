@@ -4,6 +4,7 @@ import { fileURLToPath } from 'node:url';
 import { chromium as playwright, type Browser, type Page } from 'playwright-core';
 import { preview, type PreviewServer } from 'vite';
 import { chromium, environment, flags } from '../../scripts/browser.mjs';
+import type {} from '../../www/src/crowd/hook.js';
 import type { Demo } from '../../www/src/hook.js';
 
 const root = fileURLToPath(new URL('../../', import.meta.url));
@@ -49,7 +50,10 @@ export class Site {
     page.on('requestfailed', (request) => complaints.push(`request: ${request.url()} ${request.failure()?.errorText}`));
     await prepare(page);
     await page.goto(new URL(query, this.#server.resolvedUrls!.local[0]).href);
-    await page.waitForFunction(() => Boolean(window.ctsnDemo?.ready) || Boolean(window.ctsnDemo?.error));
+    await page.waitForFunction(() => {
+      const hook = window.ctsnDemo ?? window.ctsnCrowd;
+      return Boolean(hook?.ready) || Boolean(hook?.error);
+    });
     return { page, complaints };
   }
 

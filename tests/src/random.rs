@@ -42,6 +42,13 @@ pub fn pose(rng: &mut Rng, joints: usize) -> Vec<f32> {
     (0..joints).flat_map(|_| transform(rng)).collect()
 }
 
+/// A pose [J, 3, 4], row-major -> [J, 16], column-major.
+pub fn column_major(pose: &[f32]) -> Vec<f32> {
+    let column =
+        |transform: &[f32], e: usize| if e % 4 == 3 { [0.0, 1.0][e / 15] } else { transform[e % 4 * 4 + e / 4] };
+    pose.chunks_exact(12).flat_map(|transform| (0..16).map(move |e| column(transform, e))).collect()
+}
+
 /// A model of that shape.
 pub fn model(rng: &mut Rng, shape: Shape) -> HostModel {
     let Shape { vertices: n, joints, embedding, basis, heads, per_head, layers } = shape;

@@ -5,7 +5,8 @@
 use ctsn_core::cpu::Level;
 use ctsn_core::file::Tensors;
 use ctsn_core::model::HostModel;
-use ctsn_core::{Predictor, Streams};
+use ctsn_core::{Folds, Predictor, Shares, Streams};
+use ctsn_tests::random::column_major;
 use ctsn_tests::{golden, sphere};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -54,13 +55,6 @@ fn calls(work: impl FnOnce()) -> usize {
     CALLS.get() - before
 }
 
-/// [J, 3, 4] row-major -> [J, 16] column-major.
-fn column_major(pose: &[f32]) -> Vec<f32> {
-    let column =
-        |transform: &[f32], e: usize| if e % 4 == 3 { [0.0, 1.0][e / 15] } else { transform[e % 4 * 4 + e / 4] };
-    pose.chunks_exact(12).flat_map(|transform| (0..16).map(move |e| column(transform, e))).collect()
-}
-
 #[test]
 fn prediction_allocates_once() {
     let small = &golden::ALL[1];
@@ -76,7 +70,7 @@ fn prediction_allocates_once() {
         let size = 12 * predictor.sizes().joints;
         let columns: Vec<Vec<f32>> = poses.chunks_exact(size).map(column_major).collect();
         predictor.predict(&columns[0], Streams::Both).expect("a golden pose");
-        for streams in [Streams::Both, Streams::Skeleton, Streams::None] {
+        for streams in [Streams::Both, Streams::Skeleton, Streams::Rest, Streams::None] {
             let found = calls(|| {
                 for (rows, columns) in poses.chunks_exact(size).zip(&columns) {
                     predictor.predict(columns, streams).expect("a golden pose");
@@ -85,5 +79,12 @@ fn prediction_allocates_once() {
             });
             assert_eq!(found, 0, "{level:?} {streams:?}: calls for memory in {} frames", 2 * columns.len());
         }
+        let mut folds = Folds::new(predictor.sizes().vertices);
+        let found = calls(|| {
+            for (i, columns) in columns.iter().enumerate() {
+                predictor.predict_folds(columns, &mut folds, (i % 2 == 0, 0.5), Shares::ALL).expect("a golden pose");
+            }
+        });
+        assert_eq!(found, 0, "{level:?}: calls for memory in frames of held folds");
     }
 }

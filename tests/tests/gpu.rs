@@ -4,7 +4,7 @@
 use ctsn_core::cpu::{Cpu, Level};
 use ctsn_core::model::{HostModel, Storage};
 use ctsn_core::operation::Normals;
-use ctsn_core::{Predictor, Streams};
+use ctsn_core::{Predictor, Shares, Streams};
 use ctsn_gpu::Gpu;
 use ctsn_tests::finite::largest;
 use ctsn_tests::golden;
@@ -73,10 +73,11 @@ fn parity_with_the_cpu_at_awkward_sizes() {
         }
         let mut on_cpu = Predictor::from_model(model.clone(), Level::new());
         let mut on_gpu = predictor(gpu, &model);
-        for streams in [Streams::Both, Streams::Skeleton, Streams::None, Streams::Both] {
-            let pose = random::pose(&mut rng, joints);
-            on_cpu.predict_row_major(&pose, streams).expect("a pose");
-            on_gpu.predict_row_major(&pose, streams).expect("a pose");
+        for streams in [Streams::Both, Streams::Skeleton, Streams::Rest, Streams::None, Streams::Both] {
+            let pose = random::column_major(&random::pose(&mut rng, joints));
+            let shares = Shares { skeleton: rng.f32(), mesh: rng.f32() };
+            on_cpu.predict_faded(&pose, streams, shares).expect("a pose");
+            on_gpu.predict_faded(&pose, streams, shares).expect("a pose");
             let found = block_on(on_gpu.read()).expect("a prediction");
             assert_eq!(on_gpu.confidence(), on_cpu.confidence());
             assert_eq!(found.positions.len(), 3 * vertices);

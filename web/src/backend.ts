@@ -1,6 +1,7 @@
 import { ClothBuffers } from './buffers.js';
 import { CtsnError } from './error.js';
 import { adopt, describe, lossOf, ownDevice } from './gpu.js';
+import { Fade } from './quality.js';
 import { fromCore, GpuModel, Streams, type Predictor } from './raw.js';
 
 /** Where a model computes. */
@@ -14,6 +15,9 @@ export type Measured = Readonly<Record<Backend, number>>;
 
 /** Seconds to wait before each attempt to get a device of our own again. */
 const PATIENCE = [0, 1, 2, 4, 8, 16, 32];
+
+/** The whole network. */
+const whole = /* @__PURE__ */ new Fade('full');
 
 /** The weights of a model on a device, and what was allocated for its cloths. */
 export class GpuSide {
@@ -177,8 +181,8 @@ export class Switch {
    */
   async #measure(buffers: ClothBuffers): Promise<string | undefined> {
     // `time` makes all its calls before it first waits, so that each measurement is aside as a whole.
-    const predict = () => this.#cpu.predict(Streams.Both);
-    const submit = () => buffers.predict(this.#cpu, Streams.Both);
+    const predict = () => this.#cpu.predict(Streams.Both, 1, 1);
+    const submit = () => buffers.predict(this.#cpu, whole);
     const onCpu = (calls: number) => this.#aside(() => time(calls, predict, () => Promise.resolve()));
     const onGpu = (calls: number) => this.#aside(() => time(calls, submit, () => buffers.read()));
     await onCpu(1);

@@ -1,4 +1,5 @@
-import { fromCore, type GpuPredictor, type Predictor, type Streams } from './raw.js';
+import type { Fade } from './quality.js';
+import { fromCore, type GpuPredictor, type Predictor } from './raw.js';
 
 /**
  * One cloth on the GPU: buffers that hold its last prediction, tightly packed, in metres. They can be used as vertex or
@@ -42,8 +43,8 @@ export class ClothBuffers {
   }
 
   /** @internal Submits a prediction of the pose that `cpu` holds. False if that failed: then `cpu` knows why. */
-  predict(cpu: Predictor, streams: Streams): boolean {
-    return this.#predictor!.predict(cpu, streams);
+  predict(cpu: Predictor, { streams, skeleton, mesh }: Fade): boolean {
+    return this.#predictor!.predict(cpu, streams, skeleton, mesh);
   }
 
   /** @internal Positions and normals of the last prediction. */

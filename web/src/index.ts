@@ -1,6 +1,7 @@
 export { loadModel, type GpuLoadOptions, type LoadOptions, type ModelSource } from './load.js';
 export { ClothModel, type CpuClothModel, type Frame } from './model.js';
-export type { PredictOptions, StreamChoice, Surface } from './model.js';
+export type { PredictOptions, Surface } from './model.js';
+export type { Quality } from './quality.js';
 export { ClothBuffers } from './buffers.js';
 export type { Backend, BackendChoice, Measured } from './backend.js';
 export { CtsnError, type CtsnErrorCode } from './error.js';

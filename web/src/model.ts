@@ -2,14 +2,15 @@ import { Switch, type Backend, type BackendChoice, type Measured } from './backe
 import type { ClothBuffers } from './buffers.js';
 import { CtsnError } from './error.js';
 import { writePose, type Pose } from './pose.js';
-import { fromCore, Streams, type Predictor } from './raw.js';
-
-/** Which streams of the network act: both, the skeleton stream only, or none (plain skinning). */
-export type StreamChoice = 'both' | 'skeleton' | 'none';
+import { Fade, type Quality } from './quality.js';
+import { fromCore, type Predictor } from './raw.js';
 
 /** How to predict. */
 export interface PredictOptions {
-  streams?: StreamChoice | undefined;
+  /** How much of the network: `full`, the default, `coarse` or `skinned`. */
+  quality?: Quality | undefined;
+  /** @internal A cloth on its way between qualities; takes the place of `quality`. */
+  fade?: Fade | undefined;
   /** `cpu`: this prediction on the CPU and at once, wherever the model computes its others. */
   backend?: 'cpu' | undefined;
   /** `gpu`: leave the prediction in the GPU's buffers, if the model computes there. */
@@ -46,7 +47,7 @@ export interface Surface {
   readonly triangles: Uint32Array;
 }
 
-const streamsOf = { both: Streams.Both, skeleton: Streams.Skeleton, none: Streams.None };
+const qualities = { full: new Fade('full'), coarse: new Fade('coarse'), skinned: new Fade('skinned') };
 
 /**
  * A garment's network, made by `loadModel`. Dispatches an event `backend` when it begins to compute elsewhere: on a
@@ -161,22 +162,22 @@ export class ClothModel extends EventTarget {
   predictCloth(pose: Pose, options: PredictOptions & { output: 'gpu' }): Frame | ClothBuffers;
   predictCloth(pose: Pose, options?: PredictOptions & { output?: 'arrays' | undefined }): Frame | Promise<Frame>;
   predictCloth(pose: Pose, options?: PredictOptions): Frame | ClothBuffers | Promise<Frame> {
-    const streams = streamsOf[options?.streams ?? 'both'];
-    if (streams === undefined) {
-      const found = String(options?.streams);
-      throw new CtsnError('argument', `streams: "both", "skeleton" or "none" wanted, "${found}" found`);
+    const fade = options?.fade ?? qualities[options?.quality ?? 'full'];
+    if (fade === undefined) {
+      const found = String(options?.quality);
+      throw new CtsnError('argument', `quality: "full", "coarse" or "skinned" wanted, "${found}" found`);
     }
     const predictor = this.#alive();
     writePose(pose, this.joints, this.#pose);
     const buffers = options?.backend === 'cpu' ? undefined : this.#buffers(options?.buffers);
-    if (buffers?.predict(predictor, streams)) return options?.output === 'gpu' ? buffers : this.#read(buffers, streams);
+    if (buffers?.predict(predictor, fade)) return options?.output === 'gpu' ? buffers : this.#read(buffers, fade);
     if (buffers) {
       this.#fail(fromCore(predictor.take_failure()));
       // Whoever heard of that may have predicted another pose.
       this.#alive();
       writePose(pose, this.joints, this.#pose);
     }
-    return this.#predict(streams);
+    return this.#predict(fade);
   }
 
   /** Frees the model's memory in the module and on the GPU, but no device. A second call does nothing. */
@@ -187,9 +188,11 @@ export class ClothModel extends EventTarget {
   }
 
   /** Predicts, on the CPU, the pose that was written. */
-  #predict(streams: Streams): Frame {
+  #predict(fade: Fade): Frame {
     const predictor = this.#alive();
-    if (!predictor.predict(streams)) throw fromCore(predictor.take_failure());
+    if (!fade.predict(predictor)) throw fromCore(predictor.take_failure());
+    // It may have made room for itself.
+    this.#alive();
     this.#prediction.confidence = predictor.confidence();
     return this.#prediction;
   }
@@ -202,7 +205,7 @@ export class ClothModel extends EventTarget {
   }
 
   /** Waits for the prediction just submitted. If the GPU fails meanwhile, the CPU predicts the same pose. */
-  async #read(buffers: ClothBuffers, streams: Streams): Promise<Frame> {
+  async #read(buffers: ClothBuffers, fade: Fade): Promise<Frame> {
     this.#alive();
     const pose = this.#pose.slice();
     const { confidence } = buffers;
@@ -214,7 +217,7 @@ export class ClothModel extends EventTarget {
       // Buffers freed meanwhile, by a change of the backend, are no fault of the device.
       if (!buffers.disposed) this.#fail(error);
       return this.#aside(pose, () => {
-        const { positions, normals, confidence } = this.#predict(streams);
+        const { positions, normals, confidence } = this.#predict(fade);
         return { output: 'arrays', positions: positions.slice(), normals: normals.slice(), confidence };
       });
     }

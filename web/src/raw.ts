@@ -2,12 +2,12 @@
  * The boundary to the WebAssembly module: the only file that imports the glue which wasm-bindgen generates. The other
  * side of it is crate/wasm/src/lib.rs.
  */
-import initialiseGlue, { Gpu, GpuModel, Predictor, Streams, type GpuPredictor } from './glue/ctsn.js';
+import initialiseGlue, { Gpu, GpuModel, Predictor, Streams, type Folds, type GpuPredictor } from './glue/ctsn.js';
 import { download } from './download.js';
 import { CtsnError } from './error.js';
 
 export { Gpu, GpuModel, Streams };
-export type { GpuPredictor, Predictor };
+export type { Folds, GpuPredictor, Predictor };
 
 /** Where the WebAssembly module comes from, if not from beside this file. */
 export type WasmSource = string | URL | ArrayBuffer | Uint8Array<ArrayBuffer> | WebAssembly.Module;

@@ -52,7 +52,7 @@ test.each([
 test('a wrong argument', async () => {
   expect((await failure(() => loadModel(7 as unknown as string))).code).toBe('argument');
   const { model, poses } = await loadGolden('tiny');
-  expect((await failure(() => model.predictCloth(poses[0]!, { streams: 'mesh' as 'both' }))).code).toBe('argument');
+  expect((await failure(() => model.predictCloth(poses[0]!, { quality: 'mesh' as 'full' }))).code).toBe('argument');
   model.dispose();
 });
 

@@ -44,10 +44,10 @@ export class GpuModel {
 class GpuPredictor {
   constructor(private readonly numbers: number) {}
 
-  predict(cpu: Predictor, streams: Streams): boolean {
+  predict(cpu: Predictor, streams: Streams, skeleton: number, mesh: number): boolean {
     gpu.submitted.push(streams);
     const code = gpu.submitting();
-    if (!code) return cpu.predict(streams);
+    if (!code) return cpu.predict(streams, skeleton, mesh);
     cpu.take_failure = () => coreError(code);
     return false;
   }

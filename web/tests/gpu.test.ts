@@ -36,12 +36,15 @@ const turn = () => new Promise((resolve) => setTimeout(resolve));
 const load = (device?: FakeDevice): Promise<ClothModel> =>
   loadModel(bytesOf('tiny'), { backend: 'webgpu', device: device?.lent });
 
-/** A cloth with two predictions on their way back and a third, of other streams, skipped. */
+/** A cloth with two predictions on their way back and a third, of another quality, skipped. */
 async function dressLate(): Promise<{ model: ClothModel; cloth: Cloth }> {
   const model = await load(new FakeDevice('lent'));
   const cloth = new Cloth(model, characterOf(model.joints, tiny.poses[0]!), new MeshBasicMaterial());
   gpu.held = true;
-  cloth.update().update().update({ streams: 'none' });
+  cloth.blend = 0;
+  cloth.update().update();
+  cloth.quality = 'skinned';
+  cloth.update();
   expect(gpu.answers).toHaveLength(2);
   return { model, cloth };
 }

@@ -1,5 +1,5 @@
 import { expect, expectTypeOf, test } from 'vitest';
-import { loadModel, type ClothBuffers, type Frame, type StreamChoice } from 'ctsn';
+import { loadModel, type ClothBuffers, type Frame, type Quality } from 'ctsn';
 import { difference } from '../../tests/browser/safetensors.js';
 import { bytesOf, loadConfident, loadGolden, readGolden } from './golden.js';
 
@@ -28,14 +28,14 @@ test('a pose by joint names equals a pose in order', async () => {
   model.dispose();
 });
 
-test('the streams differ: both, skeleton only, none', async () => {
+test('the qualities differ: full, coarse, skinned', async () => {
   const { model, poses } = await loadGolden('small');
-  const predict = (streams: StreamChoice) => model.predictCloth(poses[0]!, { streams }).positions.slice();
-  const [both, skeleton, none] = [predict('both'), predict('skeleton'), predict('none')];
+  const predict = (quality: Quality) => model.predictCloth(poses[0]!, { quality }).positions.slice();
+  const [full, coarse, skinned] = [predict('full'), predict('coarse'), predict('skinned')];
   // With the golden weights either stream moves the cloth by some centimetres.
-  expect(difference(both, skeleton)).toBeGreaterThan(0.01);
-  expect(difference(skeleton, none)).toBeGreaterThan(0.01);
-  expect(model.predictCloth(poses[0]!).positions).toEqual(both);
+  expect(difference(full, coarse)).toBeGreaterThan(0.01);
+  expect(difference(coarse, skinned)).toBeGreaterThan(0.01);
+  expect(model.predictCloth(poses[0]!).positions).toEqual(full);
   model.dispose();
 });
 

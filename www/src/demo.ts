@@ -1,5 +1,5 @@
 import { Material, MeshBasicMaterial, Vector3, type BufferAttribute } from 'three';
-import type { BackendChoice, ClothModel, StreamChoice } from 'ctsn';
+import type { BackendChoice, ClothModel, Quality } from 'ctsn';
 import { Cloth } from 'ctsn/three';
 import { RATE, type Character } from './character.js';
 import { createFabric } from './fabric.js';
@@ -7,6 +7,9 @@ import type { Capture } from './hook.js';
 import { Meter } from './meter.js';
 import type { Panel } from './panel.js';
 import type { Stage } from './stage.js';
+
+/** Predictions over which a change of quality is spread. */
+const BLEND = 12;
 
 /** The running page: moves the character, predicts the cloth and draws both, once per animation frame. */
 export class RunningDemo {
@@ -94,7 +97,10 @@ export class RunningDemo {
   /** Times the prediction: on the GPU until it is back. */
   #predict(): void {
     const start = performance.now();
-    const late = this.#cloth.update(this.#panel.wishes).backend === 'webgpu';
+    // At rest the next picture is the last for a while: it shows what was chosen.
+    this.#cloth.blend = this.#panel.wishes.playing ? BLEND : 0;
+    this.#cloth.quality = this.#panel.wishes.quality;
+    const late = this.#cloth.update().backend === 'webgpu';
     const end = () => this.meter.add(performance.now() - start);
     if (!late) return end();
     void this.#cloth.settled().then(() => {
@@ -115,9 +121,9 @@ export class RunningDemo {
   }
 
   /** Stops the page at a frame of a clip. */
-  stop(clip: string, frame: number, streams: StreamChoice): void {
+  stop(clip: string, frame: number, quality: Quality): void {
     this.#panel.play(false);
-    this.#panel.choose(streams);
+    this.#panel.choose(quality);
     this.#character.show(clip, frame / RATE);
     this.#panel.select(clip);
     this.draw();
@@ -131,7 +137,7 @@ export class RunningDemo {
     return {
       clip: this.#character.clip,
       frame: this.#character.time * RATE,
-      streams: this.#panel.wishes.streams,
+      quality: this.#panel.wishes.quality,
       joints: [...model.joints],
       pose: bones.flatMap((bone) => bone.matrixWorld.elements),
       positions: collect(position, (at) => at.applyMatrix4(matrixWorld)),

@@ -1,11 +1,11 @@
-import type { Backend, StreamChoice } from 'ctsn';
+import type { Backend, Quality } from 'ctsn';
 
 /** What the page shows: the pose, with which a test can compute the cloth elsewhere, and the cloth computed here. */
 export interface Capture {
   clip: string;
   /** Frame of the clip, 30 a second. */
   frame: number;
-  streams: StreamChoice;
+  quality: Quality;
   /** Joint names, in the order of the model. */
   joints: string[];
   /** World matrices of the joints, column after column [16·J]. */
@@ -19,7 +19,7 @@ export interface Capture {
 
 /**
  * `window.ctsnDemo`: the page's handle for tests and for the curious. In the address, `?pose=CLIP:FRAME` stops the page
- * at a frame of a clip (30 a second), `?streams=both|skeleton|none` chooses the source of the cloth, and
+ * at a frame of a clip (30 a second), `?quality=full|coarse|skinned` chooses the source of the cloth, and
  * `?backend=cpu|webgpu|auto` where it is computed.
  */
 export interface Demo {
@@ -33,7 +33,7 @@ export interface Demo {
   predictions: number;
   milliseconds: number;
   /** Stops the page at a frame of a clip, and answers what it then shows. */
-  show(clip: string, frame: number, streams?: StreamChoice): Promise<Capture>;
+  show(clip: string, frame: number, quality?: Quality): Promise<Capture>;
   /** What the page shows now. */
   capture(): Promise<Capture>;
   /** Where the cloth is predicted, and why not on the GPU. */

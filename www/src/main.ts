@@ -1,4 +1,4 @@
-import { loadModel, type BackendChoice, type ClothModel, type Progress, type StreamChoice } from 'ctsn';
+import { loadModel, type BackendChoice, type ClothModel, type Progress, type Quality } from 'ctsn';
 import { FileLoader } from 'three';
 import { Character, RATE } from './character.js';
 import { RunningDemo } from './demo.js';
@@ -46,10 +46,10 @@ async function start(): Promise<void> {
   element('loading').hidden = true;
 
   const address = new URL(location.href);
-  const streams = (address.searchParams.get('streams') ?? 'both') as StreamChoice;
+  const quality = (address.searchParams.get('quality') ?? 'full') as Quality;
   const wanted = readAddress(address);
-  if (wanted) demo.stop(wanted.clip, wanted.frame, streams);
-  else panel.choose(streams);
+  if (wanted) demo.stop(wanted.clip, wanted.frame, quality);
+  else panel.choose(quality);
   demo.run();
   const backend = address.searchParams.get('backend');
   if (backend) panel.compute(backend as BackendChoice);
@@ -68,7 +68,7 @@ async function start(): Promise<void> {
   Object.assign(hook, {
     clips,
     ready: true,
-    show(clip: string, frame: number, choice: StreamChoice = 'both') {
+    show(clip: string, frame: number, choice: Quality = 'full') {
       demo.stop(clip, frame, choice);
       return capture();
     },

@@ -1,9 +1,9 @@
-import type { BackendChoice, StreamChoice } from 'ctsn';
+import type { BackendChoice, Quality } from 'ctsn';
 
 /** What the person at the controls asks for. */
 export interface Wishes {
   playing: boolean;
-  streams: StreamChoice;
+  quality: Quality;
   clip: string;
   wireframe: boolean;
 }
@@ -17,10 +17,10 @@ export interface Figures {
   duration: number;
 }
 
-const explanations: Record<StreamChoice, string> = {
-  both: 'Both streams: the drape that follows from the body’s pose, and the folds that nearby vertices agree on.',
-  skeleton: 'The skeleton stream alone: the coarse drape, without the folds of the mesh stream.',
-  none: 'No network: the T-shirt bends with the bones, as game characters’ clothes usually do.',
+const explanations: Record<Quality, string> = {
+  full: 'Both streams: the drape that follows from the body’s pose, and the folds that nearby vertices agree on.',
+  coarse: 'The skeleton stream alone: the coarse drape, without the folds of the mesh stream.',
+  skinned: 'No network: the T-shirt bends with the bones, as game characters’ clothes usually do.',
 };
 
 /** The element with that id, which index.html promises. */
@@ -31,7 +31,7 @@ export function element<T extends HTMLElement>(id: string): T {
 /** The controls of the page. */
 export class Panel {
   /** What the controls say now. */
-  readonly wishes: Wishes = { playing: true, streams: 'both', clip: '', wireframe: false };
+  readonly wishes: Wishes = { playing: true, quality: 'full', clip: '', wireframe: false };
   /** Called when the person drags the time. */
   onScrub: (seconds: number) => void = () => {};
   /** Called when anything else is chosen. */
@@ -52,7 +52,7 @@ export class Panel {
     element('vertices').textContent = vertices.toLocaleString('en');
     element('size').textContent = formatBytes(bytes);
     this.#listen();
-    this.choose('both');
+    this.choose('full');
     element('panel').hidden = false;
   }
 
@@ -72,10 +72,10 @@ export class Panel {
   }
 
   /** Chooses where the cloth comes from. */
-  choose(streams: StreamChoice): void {
-    this.wishes.streams = streams;
-    document.querySelector<HTMLInputElement>(`input[name=streams][value=${streams}]`)!.checked = true;
-    element('explanation').textContent = explanations[streams];
+  choose(quality: Quality): void {
+    this.wishes.quality = quality;
+    document.querySelector<HTMLInputElement>(`input[name=quality][value=${quality}]`)!.checked = true;
+    element('explanation').textContent = explanations[quality];
     this.onChange();
   }
 
@@ -106,8 +106,8 @@ export class Panel {
       this.play(false);
       this.onScrub(Number(this.#time.value));
     });
-    for (const radio of document.querySelectorAll<HTMLInputElement>('input[name=streams]')) {
-      radio.addEventListener('change', () => this.choose(radio.value as StreamChoice));
+    for (const radio of document.querySelectorAll<HTMLInputElement>('input[name=quality]')) {
+      radio.addEventListener('change', () => this.choose(radio.value as Quality));
     }
     for (const radio of document.querySelectorAll<HTMLInputElement>('input[name=backend]')) {
       radio.addEventListener('change', () => this.onBackend(radio.value as BackendChoice));

@@ -24,4 +24,4 @@ pub mod topology;
 pub use confidence::Confidence;
 pub use error::{Error, Result};
 pub use network::Streams;
-pub use predictor::Predictor;
+pub use predictor::{Folds, Predictor, Shares};

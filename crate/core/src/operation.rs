@@ -62,7 +62,7 @@ operations! { $
         y: W,
     }
 
-    /// `Δ[i] = Σ_j w_j B_j[i]`, `T = rest + c·Δ`. network.md §2, §3, §4.
+    /// `Δ[i] = Σ_j w_j B_j[i]`, `T = rest + s·Δ`. network.md §2, §3, §4.
     Blend<R, W> {
         /// w [count], one row for all vertices, or [n, count].
         weights: R,
@@ -70,8 +70,8 @@ operations! { $
         basis: R,
         /// [n, 3].
         rest: R,
-        /// c: what the residual is worth in this pose [1].
-        confidence: R,
+        /// s: what the residual counts in this prediction [1].
+        share: R,
         /// Δ [n, 3].
         residual: W,
         /// T [n, 3].

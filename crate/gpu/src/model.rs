@@ -11,6 +11,14 @@ use ctsn_core::{Confidence, Streams};
 use std::cell::RefCell;
 use std::sync::Arc;
 
+/// Streams in the order in which frames are recorded.
+const ORDER: [Streams; 4] = [Streams::Both, Streams::Skeleton, Streams::Rest, Streams::None];
+
+/// Where the frame of `streams` is among those recorded.
+pub(crate) fn place(streams: Streams) -> usize {
+    ORDER.iter().position(|one| *one == streams).unwrap_or_else(|| unreachable!("every one is recorded"))
+}
+
 /// A model on a GPU; clones share it. Dropping the last one, predictors included, frees its memory.
 #[derive(Clone)]
 pub struct Model(pub(crate) Arc<Inner>);
@@ -23,11 +31,12 @@ pub(crate) struct Inner {
     pub trust: Option<Confidence>,
     pub constants: Vec<wgpu::Buffer>,
     pub rooms: Vec<Room>,
-    /// Frames by streams: both, skeleton, none.
-    pub frames: [Vec<Dispatch>; 3],
+    /// Frames, by streams as [`ORDER`] has them.
+    pub frames: [Vec<Dispatch>; 4],
     /// Rooms of what is written and read from outside.
     pub joints: usize,
-    pub confidence: usize,
+    /// What the residuals of skeleton and mesh stream count; nothing where a model lacks the stream.
+    pub shares: [Option<usize>; 2],
     pub positions: usize,
     pub normals: usize,
     /// Positions and normals of what is drawn: the cloth's own where the model has no surface.
@@ -76,12 +85,12 @@ fn record(gpu: &Gpu, model: &HostModel) -> Result<Model> {
         predict(&mut recorder, &recorded, streams, &mut a);
         recorder.take()
     };
-    let frames = [one(Streams::Both)?, one(Streams::Skeleton)?, one(Streams::None)?];
+    let frames = [one(ORDER[0])?, one(ORDER[1])?, one(ORDER[2])?, one(ORDER[3])?];
     for dispatch in frames.iter().flatten() {
         gpu.pipeline(dispatch.shader, dispatch.room);
     }
     let room = |id| recorder.room(id).unwrap_or_else(|| unreachable!("every frame writes it"));
-    let (joints, confidence) = (room(a.joints), room(a.confidence));
+    let (joints, shares) = (room(a.joints), [a.skeleton_share, a.mesh_share].map(|id| recorder.room(id)));
     let (positions, normals) = (room(a.positions), room(a.normals));
     let drawn = a.drawn.as_ref().map_or([positions, normals], |drawn| [room(drawn.positions), room(drawn.normals)]);
     let results = a.stages().into_iter().filter_map(|(name, id)| Some((name, recorder.room(*id)?))).collect();
@@ -96,7 +105,7 @@ fn record(gpu: &Gpu, model: &HostModel) -> Result<Model> {
         rooms,
         frames,
         joints,
-        confidence,
+        shares,
         positions,
         normals,
         drawn,
@@ -106,11 +115,7 @@ fn record(gpu: &Gpu, model: &HostModel) -> Result<Model> {
 
 impl Inner {
     pub fn frame(&self, streams: Streams) -> &[Dispatch] {
-        match streams {
-            Streams::Both => &self.frames[0],
-            Streams::Skeleton => &self.frames[1],
-            Streams::None => &self.frames[2],
-        }
+        &self.frames[place(streams)]
     }
 }
 

@@ -1,10 +1,10 @@
 //! A model ready to predict on a GPU: one command buffer per frame, the pose its only upload, read-back on request.
 
-use crate::model::Model;
+use crate::model::{Model, place};
 use crate::read::Reader;
 use crate::recording::{Dispatch, Operand, Room};
 use crate::{Error, Gpu, Result};
-use ctsn_core::{Confidence, Streams};
+use ctsn_core::{Confidence, Shares, Streams};
 use wgpu::BufferUsages as Usage;
 
 /// One cloth: a [`Model`] with the intermediate results of its own. Dropping it frees them.
@@ -14,8 +14,8 @@ pub struct Predictor {
     trust: Option<Confidence>,
     confidence: f32,
     pub(crate) buffers: Vec<wgpu::Buffer>,
-    /// Frames by streams: both, skeleton, none.
-    frames: [Vec<Step>; 3],
+    /// Frames, by streams as the model records them.
+    frames: [Vec<Step>; 4],
     pub(crate) reader: Reader,
 }
 
@@ -57,7 +57,7 @@ impl Predictor {
         let shown = |room| [inner.positions, inner.normals].contains(&room) || inner.drawn.contains(&room);
         let buffers = buffers(gpu, &inner.rooms, shown);
         let step = |dispatch: &Dispatch| Step::new(gpu, dispatch, &inner.constants, &buffers);
-        let frames = [0, 1, 2].map(|streams| inner.frames[streams].iter().map(step).collect());
+        let frames = [0, 1, 2, 3].map(|streams| inner.frames[streams].iter().map(step).collect());
         let pose = vec![0.0; 12 * inner.sizes.joints];
         Self {
             model: model.clone(),
@@ -80,8 +80,16 @@ impl Predictor {
     /// # Errors
     /// A pose that is none; [`Error::Lost`].
     pub fn predict(&mut self, joints: &[f32], streams: Streams) -> Result<()> {
+        self.predict_faded(joints, streams, Shares::ALL)
+    }
+
+    /// The same with `shares` of the residuals.
+    ///
+    /// # Errors
+    /// A pose that is none; [`Error::Lost`].
+    pub fn predict_faded(&mut self, joints: &[f32], streams: Streams, shares: Shares) -> Result<()> {
         self.model.rig().read_column_major(joints, &mut self.pose)?;
-        self.submit(streams)
+        self.submit(streams, shares)
     }
 
     /// Joint world transforms [J, 3, 4], row-major, metres: submits the frame and returns at once.
@@ -90,14 +98,14 @@ impl Predictor {
     /// A pose that is none; [`Error::Lost`].
     pub fn predict_row_major(&mut self, joints: &[f32], streams: Streams) -> Result<()> {
         self.model.rig().read(joints, &mut self.pose)?;
-        self.submit(streams)
+        self.submit(streams, Shares::ALL)
     }
 
-    fn submit(&mut self, streams: Streams) -> Result<()> {
+    fn submit(&mut self, streams: Streams, shares: Shares) -> Result<()> {
         let gpu = self.model.gpu();
         gpu.check()?;
         self.confidence = self.trust.as_mut().map_or(1.0, |trust| trust.of(self.model.rig(), &self.pose));
-        self.write_pose();
+        self.write_pose(shares);
         let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
         self.steps(streams).iter().for_each(|step| step.encode(&mut pass));
@@ -106,18 +114,17 @@ impl Predictor {
         gpu.check()
     }
 
-    pub(crate) fn write_pose(&self) {
+    pub(crate) fn write_pose(&self, shares: Shares) {
         let (inner, queue) = (&self.model.0, self.model.gpu().queue());
         queue.write_buffer(&self.buffers[inner.joints], 0, bytemuck::cast_slice(&self.pose));
-        queue.write_buffer(&self.buffers[inner.confidence], 0, bytemuck::bytes_of(&self.confidence));
+        for (room, share) in inner.shares.iter().zip([shares.skeleton, shares.mesh]) {
+            let share = self.confidence * share;
+            room.iter().for_each(|room| queue.write_buffer(&self.buffers[*room], 0, bytemuck::bytes_of(&share)));
+        }
     }
 
     pub(crate) fn steps(&self, streams: Streams) -> &[Step] {
-        &self.frames[match streams {
-            Streams::Both => 0,
-            Streams::Skeleton => 1,
-            Streams::None => 2,
-        }]
+        &self.frames[place(streams)]
     }
 
     /// What the residuals were worth in the last pose, 0 to 1, as [`ctsn_core::Predictor::confidence`].

@@ -2,6 +2,7 @@
 //! free these objects meanwhile.
 
 use crate::{Predictor, Streams, to_js};
+use ctsn_core::Shares;
 use js_sys::futures::future_to_promise;
 use js_sys::{Array, Float32Array, Promise};
 use wasm_bindgen::prelude::*;
@@ -53,9 +54,10 @@ pub struct GpuPredictor(ctsn_gpu::Predictor);
 #[wasm_bindgen]
 impl GpuPredictor {
     /// Submits the prediction for the pose at `cpu.pose_address()`, where `cpu` is of the same model. False if that
-    /// failed: then `cpu.take_failure()` says why.
-    pub fn predict(&mut self, cpu: &mut Predictor, streams: Streams) -> bool {
-        cpu.failure = self.0.predict(&cpu.pose, streams.into()).err();
+    /// failed: then `cpu.take_failure()` says why. Shares as in [`Predictor::predict`].
+    pub fn predict(&mut self, cpu: &mut Predictor, streams: Streams, skeleton: f32, mesh: f32) -> bool {
+        let shares = Shares { skeleton, mesh };
+        cpu.failure = self.0.predict_faded(&cpu.pose, streams.into(), shares).err();
         cpu.failure.is_none()
     }
 

@@ -5,6 +5,7 @@
 
 mod gpu;
 
+use ctsn_core::Shares;
 use ctsn_gpu::Error;
 use wasm_bindgen::prelude::*;
 
@@ -16,8 +17,8 @@ pub enum Streams {
     Both = 0,
     /// The skeleton-based stream only.
     Skeleton = 1,
-    /// No stream: plain linear blend skinning.
-    None = 2,
+    /// No stream: the garment at rest, moved by the joints.
+    Rest = 2,
 }
 
 impl From<Streams> for ctsn_core::Streams {
@@ -25,7 +26,7 @@ impl From<Streams> for ctsn_core::Streams {
         match streams {
             Streams::Both => Self::Both,
             Streams::Skeleton => Self::Skeleton,
-            Streams::None => Self::None,
+            Streams::Rest => Self::Rest,
         }
     }
 }
@@ -42,6 +43,10 @@ fn to_js(error: &Error) -> js_sys::Error {
 pub fn start() {
     console_error_panic_hook::set_once();
 }
+
+/// What one cloth shows of the mesh stream between calls that compute it.
+#[wasm_bindgen]
+pub struct Folds(ctsn_core::Folds);
 
 /// One model with its buffers. JavaScript reaches the large ones by address, so that a prediction copies nothing.
 #[wasm_bindgen]
@@ -120,11 +125,27 @@ impl Predictor {
         self.inner.normals().as_ptr()
     }
 
-    /// Predicts from the pose at [`Self::pose_address`]. False if that failed: then [`Self::take_failure`] says why.
-    /// Not a `Result`: wasm-bindgen returns one as a fresh array, and a prediction shall allocate nothing.
-    pub fn predict(&mut self, streams: Streams) -> bool {
-        self.failure = self.inner.predict(&self.pose, streams.into()).err().map(Error::from);
+    /// Predicts from the pose at [`Self::pose_address`], with those shares of the two streams' residuals. False if that
+    /// failed: then [`Self::take_failure`] says why. Not a `Result`: wasm-bindgen returns one as a fresh array, and a
+    /// prediction shall allocate nothing.
+    pub fn predict(&mut self, streams: Streams, skeleton: f32, mesh: f32) -> bool {
+        let shares = Shares { skeleton, mesh };
+        self.failure = self.inner.predict_faded(&self.pose, streams.into(), shares).err().map(Error::from);
         self.failure.is_none()
+    }
+
+    /// The same by the whole network, for a cloth whose mesh stream is computed in some calls only: in this one if
+    /// `aim`; `step`: how much of the way to the last aim the folds go on.
+    pub fn predict_folds(&mut self, folds: &mut Folds, aim: bool, step: f32, skeleton: f32, mesh: f32) -> bool {
+        let shares = Shares { skeleton, mesh };
+        let done = self.inner.predict_folds(&self.pose, &mut folds.0, (aim, step), shares);
+        self.failure = done.err().map(Error::from);
+        self.failure.is_none()
+    }
+
+    /// Room for the folds of one cloth.
+    pub fn folds(&self) -> Folds {
+        Folds(ctsn_core::Folds::new(self.inner.sizes().vertices))
     }
 
     /// How much of the network's folds the last prediction shows: 1 in poses like those of the training, 0 far away.

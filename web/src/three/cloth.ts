@@ -1,7 +1,8 @@
 import { Matrix4, Mesh, type BufferGeometry, type Material, type Object3D } from 'three';
 import type { Backend } from '../backend.js';
 import type { ClothBuffers } from '../buffers.js';
-import type { ClothModel, Frame, PredictOptions } from '../model.js';
+import type { ClothModel, Frame } from '../model.js';
+import { Fade, type Quality } from '../quality.js';
 import { findBones, refresh, refreshAbove, topmost, type Character } from './bones.js';
 import { boundPose, reachOf } from './bounds.js';
 import { splitPlacement } from './placement.js';
@@ -12,9 +13,6 @@ import { ZeroCopy } from './zero-copy.js';
  * Predictions on their way back from the GPU, at most. With one, every second animation frame would show nothing new.
  */
 const IN_FLIGHT = 2;
-
-/** How a cloth is to be predicted. */
-export type ClothOptions = Pick<PredictOptions, 'streams'>;
 
 /**
  * A garment in a three.js scene. Add it anywhere in the scene and call `update()` once per animation frame, after the
@@ -31,6 +29,11 @@ export class Cloth<M extends Material | Material[] = Material> extends Mesh<Buff
   override readonly type: string = 'Cloth';
   /** The network that moves this cloth. */
   readonly model: ClothModel;
+  /**
+   * How much of the network it takes. It may change at any time, and blends. `auto`: what a `Wardrobe` says; without
+   * one, `full`.
+   */
+  quality: Quality | 'auto' = 'full';
   /** The objects whose world matrices make the pose, in the order of `model.joints`. */
   readonly bones: readonly Object3D[];
 
@@ -41,8 +44,10 @@ export class Cloth<M extends Material | Material[] = Material> extends Mesh<Buff
   readonly #pose: Float32Array;
   readonly #placement = /* @__PURE__ */ new Matrix4();
   readonly #zeroCopy: ZeroCopy;
-  /** How the last update wants the cloth predicted. */
-  #options: ClothOptions | undefined;
+  readonly #fade = new Fade('full');
+  /** How the next prediction is asked for: one object for all, so that none is made. */
+  readonly #options = { fade: this.#fade };
+  readonly #atOnce = { fade: this.#fade, backend: 'cpu' } as const;
   /** Answers on their way from the GPU, and what remains to be done when they come. */
   #inFlight = 0;
   readonly #late = new Set<Promise<unknown>>();
@@ -54,7 +59,7 @@ export class Cloth<M extends Material | Material[] = Material> extends Mesh<Buff
   #confidence = 1;
   /** What was refused between two updates. */
   #failure: unknown;
-  /** Distance of the cloth from the joints, metres; measured when only the GPU knows the positions. */
+  /** Distance of the cloth from the joints, metres; measured when bounds are wanted where nobody knows the positions. */
   #reach: number | undefined;
 
   constructor(model: ClothModel, character: Character, material: M, renderer?: object) {
@@ -70,8 +75,17 @@ export class Cloth<M extends Material | Material[] = Material> extends Mesh<Buff
     // The matrix follows from the bones; this object's own position, rotation and scale are ignored.
     this.matrixAutoUpdate = false;
     // The first prediction is there at once, wherever later ones are computed.
-    if (this.#read()) this.#show(model.predictCloth(this.#pose, { backend: 'cpu' }));
+    if (this.#read()) this.#show(model.predictCloth(this.#pose, this.#atOnce));
     this.#place();
+  }
+
+  /** Updates over which a change of `quality` is spread: a dozen, if nothing else is said. 0: the next shows it. */
+  get blend(): number {
+    return this.#fade.length;
+  }
+
+  set blend(updates: number) {
+    this.#fade.length = updates;
   }
 
   /** Where the cloth is predicted. */
@@ -101,12 +115,33 @@ export class Cloth<M extends Material | Material[] = Material> extends Mesh<Buff
    * Predicts the cloth for the bones as they stand now. On the CPU it allocates nothing. Throws what is refused, also
    * what the GPU refused since the last call.
    */
-  update(options?: ClothOptions): this {
+  update(): this {
     this.#complain();
-    this.#options = options;
-    if (this.#read()) this.#predict();
+    if (this.#read()) this.#ask(this.quality === 'auto' ? 'full' : this.quality, 1);
     this.#place();
     return this;
+  }
+
+  /**
+   * @internal Reads the bones, and says in which pose; nothing for a character scaled to nothing. Until it is
+   * predicted, the cloth has the bounds that it may have there.
+   */
+  locate(): Float32Array | undefined {
+    this.#complain();
+    const there = this.#read();
+    this.#place();
+    if (!there) return undefined;
+    this.#bound();
+    return this.#pose;
+  }
+
+  /**
+   * @internal Predicts the cloth where it was last located; `decided` is the quality of one that leaves it open. Says
+   * what had to be computed.
+   */
+  predict(decided: Quality, every: number): Quality {
+    this.#ask(this.quality === 'auto' ? decided : this.quality, this.quality === 'auto' ? every : 1);
+    return this.#fade.computed;
   }
 
   /** Settles when what the last `update()` asked for is there to be drawn: at once on the CPU. */
@@ -121,6 +156,12 @@ export class Cloth<M extends Material | Material[] = Material> extends Mesh<Buff
     return splitPlacement(this.bones, this.model.rootIndex, this.#rootInverseBind, this.#pose, this.#placement);
   }
 
+  #ask(quality: Quality, every: number): void {
+    this.#fade.every = every;
+    this.#fade.advance(quality);
+    this.#predict();
+  }
+
   /** Predicts the cloth for the bones last read. */
   #predict(): void {
     this.#skipped = false;
@@ -128,7 +169,7 @@ export class Cloth<M extends Material | Material[] = Material> extends Mesh<Buff
     if (buffers) return this.#draw(buffers);
     // Until there are buffers to draw from, the CPU predicts: it is never late.
     if (this.#zeroCopy.shares()) {
-      return this.#show(this.model.predictCloth(this.#pose, { ...this.#options, backend: 'cpu' }));
+      return this.#show(this.model.predictCloth(this.#pose, this.#atOnce));
     }
     if (this.#inFlight >= IN_FLIGHT) {
       this.#skipped = true;
@@ -141,11 +182,10 @@ export class Cloth<M extends Material | Material[] = Material> extends Mesh<Buff
 
   #draw(buffers: ClothBuffers): void {
     const { model } = this;
-    this.#reach ??= reachOf(model.predictCloth(this.#pose, { backend: 'cpu' }).positions, this.#pose);
     const answer = model.predictCloth(this.#pose, { ...this.#options, output: 'gpu', buffers });
     if (answer.output === 'gpu') {
       this.#shown = ++this.#asked;
-      boundPose(this.#pose, this.#reach, this.geometry);
+      this.#bound();
       this.#zeroCopy.draw(answer);
       this.#confidence = answer.confidence;
     } else {
@@ -153,6 +193,11 @@ export class Cloth<M extends Material | Material[] = Material> extends Mesh<Buff
       this.#zeroCopy.ready();
       this.#show(answer);
     }
+  }
+
+  #bound(): void {
+    this.#reach ??= reachOf(this.model.predictCloth(this.#pose, { backend: 'cpu' }).positions, this.#pose);
+    boundPose(this.#pose, this.#reach, this.geometry);
   }
 
   /** Shows a late answer when it comes, unless a later one is shown, and then predicts what was skipped meanwhile. */
@@ -203,6 +248,7 @@ export class Cloth<M extends Material | Material[] = Material> extends Mesh<Buff
   /** Frees the geometry, and the buffers on the GPU. */
   override dispose(): void {
     this.geometry.dispose();
+    this.#fade.dispose();
     this.#zeroCopy.dispose();
     // Object3D has a dispose() of its own since three r187.
     super.dispose?.();

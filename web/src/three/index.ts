@@ -1,4 +1,5 @@
-export { Cloth, type ClothOptions } from './cloth.js';
+export { Cloth } from './cloth.js';
+export { Wardrobe } from './wardrobe.js';
 export { deviceOf } from './renderer.js';
 export { ClothLoader } from './loader.js';
 export type { Character } from './bones.js';

@@ -5,7 +5,7 @@ use crate::device::Device;
 use crate::operation::{Activation, Blend, Linear};
 
 /// γ -> Δ_S and T_C + Δ_S.
-pub(super) fn skeleton<D: Device>(device: &mut D, model: &DeviceModel<D>, a: &mut Activations<D::Buffer>) {
+pub(crate) fn skeleton<D: Device>(device: &mut D, model: &DeviceModel<D>, a: &mut Activations<D::Buffer>) {
     for (i, layer) in model.embedding.iter().enumerate() {
         let activation = if i + 1 == model.embedding.len() { Activation::None } else { Activation::Relu };
         let (before, after) = a.embedding.split_at_mut(i);
@@ -16,7 +16,7 @@ pub(super) fn skeleton<D: Device>(device: &mut D, model: &DeviceModel<D>, a: &mu
         weights: a.embedding.last().unwrap_or(&a.pose),
         basis: &model.skeleton_basis,
         rest: &model.rest,
-        confidence: &a.confidence,
+        share: &a.skeleton_share,
         residual: &mut a.skeleton,
         template: &mut a.coarse,
     };

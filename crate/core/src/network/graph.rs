@@ -8,7 +8,7 @@ use crate::operation::{Activation, Attend, Blend, Features, Linear, Space};
 use crate::topology::Graph;
 
 /// Body frame and T_C + Δ_S -> Δ_M and T_C(γ).
-pub(super) fn mesh<D: Device>(device: &mut D, model: &DeviceModel<D>, a: &mut Activations<D::Buffer>) {
+pub(crate) fn mesh<D: Device>(device: &mut D, model: &DeviceModel<D>, a: &mut Activations<D::Buffer>) {
     let reference = &model.reference;
     skin(device, &reference.rest, &reference.skinning, &a.body_frame, Space::Body, &mut a.reference);
     let features = Features {
@@ -36,7 +36,7 @@ pub(super) fn mesh<D: Device>(device: &mut D, model: &DeviceModel<D>, a: &mut Ac
         weights: a.vertex_mlp.last().unwrap_or(&a.nodes),
         basis: &model.mesh_basis,
         rest: &a.coarse,
-        confidence: &a.confidence,
+        share: &a.mesh_share,
         residual: &mut a.mesh,
         template: &mut a.template,
     };

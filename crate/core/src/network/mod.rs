@@ -8,7 +8,9 @@ use crate::device::Device;
 use crate::model::{HostModel, Model, Skinning};
 use crate::operation::{self, BodyFrame, Normals, Space};
 pub use collide::{Collision, collide, expose, push};
+pub(crate) use embedding::skeleton;
 pub use graph::graph_layer;
+pub(crate) use graph::mesh;
 use std::sync::Arc;
 
 /// Which part of the network runs.
@@ -18,7 +20,9 @@ pub enum Streams {
     Both,
     /// The skeleton stream only: the coarse prediction.
     Skeleton,
-    /// No stream: the template skinned with `W_C^I`.
+    /// No stream: the template skinned with `W_C`, which the residuals are added to.
+    Rest,
+    /// Plain skinning, the baseline of comparisons: the template skinned with `W_C^I`.
     None,
 }
 
@@ -29,8 +33,10 @@ pub type DeviceModel<D> = Model<<D as Device>::Buffer, <D as Device>::Indices>;
 pub struct Activations<B> {
     /// World joint transforms `G_j` [J, 3, 4].
     pub joints: B,
-    /// What the residuals are worth in this pose, 0 to 1 [1].
-    pub confidence: B,
+    /// What Δ_S counts in this prediction, 0 to 1 [1].
+    pub skeleton_share: B,
+    /// What Δ_M counts in this prediction, 0 to 1 [1].
+    pub mesh_share: B,
     /// Pose vector γ [12J].
     pub pose: B,
     /// `N·A_j`, then `N⁻¹` [J + 1, 3, 4].
@@ -94,7 +100,8 @@ impl<B> Activations<B> {
         };
         Self {
             joints: buffer("body_frame", 12 * joints),
-            confidence: buffer("body_frame", 1),
+            skeleton_share: buffer("body_frame", 1),
+            mesh_share: buffer("body_frame", 1),
             pose: buffer("body_frame", 12 * joints),
             body_frame: buffer("body_frame", 12 * (joints + 1)),
             embedding: model.embedding.iter().map(|layer| buffer("embedding", layer.outputs)).collect(),
@@ -130,15 +137,24 @@ impl<B> Activations<B> {
     }
 }
 
-/// A whole prediction: joints and confidence (written before) -> positions in the world, their normals, and what is
-/// drawn.
+/// A whole prediction: joints and shares (written before) -> positions in the world, their normals, and what is drawn.
 pub fn predict<D: Device>(device: &mut D, model: &DeviceModel<D>, streams: Streams, a: &mut Activations<D::Buffer>) {
-    let (rig, joints) = (Arc::clone(&model.rig), &a.joints);
-    device.run(BodyFrame { rig, joints, transforms: &mut a.body_frame, vector: &mut a.pose }.into());
+    pose(device, model, a);
     forward(device, model, streams, Space::World, a);
-    if streams == Streams::Both {
+    if matches!(streams, Streams::Both | Streams::Skeleton) {
         collide(device, model, a);
     }
+    finish(device, model, a);
+}
+
+/// Joints -> body frame and pose vector.
+pub(crate) fn pose<D: Device>(device: &mut D, model: &DeviceModel<D>, a: &mut Activations<D::Buffer>) {
+    let (rig, joints) = (Arc::clone(&model.rig), &a.joints);
+    device.run(BodyFrame { rig, joints, transforms: &mut a.body_frame, vector: &mut a.pose }.into());
+}
+
+/// Positions in the world -> normals, and what is drawn.
+pub(crate) fn finish<D: Device>(device: &mut D, model: &DeviceModel<D>, a: &mut Activations<D::Buffer>) {
     device.run(Normals { positions: &a.positions, triangles: &model.triangles, normals: &mut a.normals }.into());
     if let (Some(surface), Some(drawn)) = (&model.surface, &mut a.drawn) {
         let surface = operation::Surface {
@@ -152,7 +168,7 @@ pub fn predict<D: Device>(device: &mut D, model: &DeviceModel<D>, streams: Strea
     }
 }
 
-/// Confidence, pose and body frame (written before) -> template and positions in `space`.
+/// Shares, pose and body frame (written before) -> template and positions in `space`.
 pub fn forward<D: Device>(
     device: &mut D,
     model: &DeviceModel<D>,
@@ -163,11 +179,14 @@ pub fn forward<D: Device>(
     if streams == Streams::None {
         return skin(device, &model.rest, &model.reference.skinning, &a.body_frame, space, &mut a.positions);
     }
-    embedding::skeleton(device, model, a);
+    if streams == Streams::Rest {
+        return skin(device, &model.rest, &model.skinning, &a.body_frame, space, &mut a.positions);
+    }
+    skeleton(device, model, a);
     if streams == Streams::Skeleton || !model.mesh_stream {
         return skin(device, &a.coarse, &model.skinning, &a.body_frame, space, &mut a.positions);
     }
-    graph::mesh(device, model, a);
+    mesh(device, model, a);
     skin(device, &a.template, &model.skinning, &a.body_frame, space, &mut a.positions);
 }
 

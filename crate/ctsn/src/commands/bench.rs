@@ -137,7 +137,7 @@ struct Timed {
 impl Timed {
     fn new(model: &HostModel, level: Level) -> Self {
         let mut room = Activations::new(model, |_, length| vec![0.0; length]);
-        room.confidence[0] = 1.0;
+        (room.skeleton_share[0], room.mesh_share[0]) = (1.0, 1.0);
         let predictor = Predictor::from_model(model.clone(), level);
         Self { predictor, device: Cpu::with_level(level), room, whole: Vec::new(), repair: Vec::new() }
     }

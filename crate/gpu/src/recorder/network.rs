@@ -53,7 +53,7 @@ impl Record for Linear<Id, Id> {
 
 impl Record for Blend<Id, Id> {
     fn record(self, recorder: &mut Recorder) {
-        let Self { weights, basis, rest, confidence, residual, template } = self;
+        let Self { weights, basis, rest, share, residual, template } = self;
         let numbers = recorder.length(residual);
         let count = recorder.length(basis) / numbers;
         let shared = recorder.length(weights) == count;
@@ -61,7 +61,7 @@ impl Record for Blend<Id, Id> {
             recorder.rows(weights, count, whole(count)),
             recorder.pack(("basis", basis.0), |it| pack::basis(it.values(basis), count)),
             recorder.rows(rest, 3, 3),
-            recorder.rows(confidence, 1, 4),
+            recorder.rows(share, 1, 4),
             recorder.rows(residual, 3, 3),
             recorder.rows(template, 3, 3),
         ];

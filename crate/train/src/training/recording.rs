@@ -24,10 +24,10 @@ impl Recording {
         let all = recorded.parameters().into_iter().map(|(name, id)| (name, *id));
         let learning: Vec<(String, Id)> = all.filter(|(name, _)| variant.learns(name)).collect();
         // Samples are what the range is made of, and poses mixed of them hardly leave it.
-        let confidence = tape.buffer(&[1.0]);
+        let [skeleton_share, mesh_share] = [0; 2].map(|_| tape.buffer(&[1.0]));
         let shared = tape.seal(&learning.iter().map(|(_, id)| id).collect::<Vec<_>>());
         let mut activations = Activations::new(model, |_, length| tape.buffer(&vec![0.0; length]));
-        activations.confidence = confidence;
+        (activations.skeleton_share, activations.mesh_share) = (skeleton_share, mesh_share);
         forward(&mut tape, &recorded, streams, Space::Body, &mut activations);
         let coarse = (variant.skeleton && streams == Streams::Both).then(|| {
             let mut coarse = tape.buffer(&vec![0.0; model.sizes.vertices * 3]);

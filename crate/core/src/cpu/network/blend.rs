@@ -1,5 +1,5 @@
 //! `Δ[i] = Σ_j w_j B_j[i]`, the weights shared by all vertices (network.md §2) or one row per vertex (§3), and `T =
-//! rest + c·Δ` (§4), where the confidence c is 1 among the poses seen in training. Twin: shaders/blend.wgsl.
+//! rest + s·Δ` (§4). The share s is 1 among the poses seen in training and where nothing is faded. Twin: shaders/blend.wgsl.
 
 use crate::cpu::vector::dot;
 use crate::cpu::{Cpu, Kernel};
@@ -8,11 +8,11 @@ use fearless_simd::{Simd, dispatch};
 
 impl Kernel for Blend<&[f32], &mut [f32]> {
     fn run(self, cpu: &mut Cpu) {
-        let Self { weights, basis, rest, confidence, residual, template } = self;
+        let Self { weights, basis, rest, share, residual, template } = self;
         dispatch!(cpu.level, simd => kernel(simd, weights, basis, residual));
-        let confidence = confidence[0];
+        let share = share[0];
         for ((template, rest), residual) in template.iter_mut().zip(rest).zip(residual) {
-            *template = rest + confidence * *residual;
+            *template = rest + share * *residual;
         }
     }
 }
@@ -37,12 +37,12 @@ impl crate::suite::Suite for Blend<Vec<f32>, Vec<f32>> {
     fn operands(rng: &mut fastrand::Rng) -> Vec<Self> {
         // Weights shared by all vertices or one row each; all of the residual, a part of it, none.
         let shapes = [(1, 1, true), (5, 6, false), (67, 13, true), (130, 129, false), (130, 8, false)];
-        let all = shapes.into_iter().flat_map(|shape| [1.0, 0.3, 0.0].map(|confidence| (shape, confidence)));
-        let mut operand = |((n, count, shared), confidence): ((usize, usize, bool), f32)| Self {
+        let all = shapes.into_iter().flat_map(|shape| [1.0, 0.3, 0.0].map(|share| (shape, share)));
+        let mut operand = |((n, count, shared), share): ((usize, usize, bool), f32)| Self {
             weights: crate::suite::numbers(rng, if shared { count } else { n * count }, 1.0),
             basis: crate::suite::numbers(rng, 3 * n * count, 0.1),
             rest: crate::suite::numbers(rng, 3 * n, 1.0),
-            confidence: vec![confidence],
+            share: vec![share],
             residual: vec![0.0; 3 * n],
             template: vec![0.0; 3 * n],
         };
@@ -55,8 +55,8 @@ impl crate::suite::Suite for Blend<Vec<f32>, Vec<f32>> {
         let row = |i: usize| if weights.len() == count { 0 } else { i / 3 * count };
         let sum = |i: usize| (0..count).map(|j| weights[row(i) + j] * basis[i * count + j]).sum::<f64>();
         let residual: Vec<f64> = (0..rest.len()).map(sum).collect();
-        let confidence = f64::from(self.confidence[0]);
-        let template = rest.iter().zip(&residual).map(|(rest, residual)| rest + confidence * residual).collect();
+        let share = f64::from(self.share[0]);
+        let template = rest.iter().zip(&residual).map(|(rest, residual)| rest + share * residual).collect();
         vec![Some(residual), Some(template)]
     }
 }

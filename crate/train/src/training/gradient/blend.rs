@@ -5,17 +5,17 @@ use ctsn_core::cpu::Level;
 use ctsn_core::cpu::vector::axpy;
 use fearless_simd::{Simd, dispatch};
 
-/// weights [count] or [n, count], basis [n, 3, count], confidence c, g [n, 3] -> dweights (overwritten), dbasis.
+/// weights [count] or [n, count], basis [n, 3, count], share s, g [n, 3] -> dweights (overwritten), dbasis.
 pub fn blend(
     level: Level,
     weights: &[f32],
     basis: &[f32],
-    confidence: f32,
+    share: f32,
     g: &[f32],
     dweights: &mut [f32],
     dbasis: &mut [f32],
 ) {
-    dispatch!(level, simd => kernel(simd, weights, basis, confidence, g, dweights, dbasis));
+    dispatch!(level, simd => kernel(simd, weights, basis, share, g, dweights, dbasis));
 }
 
 #[inline(always)]
@@ -23,7 +23,7 @@ fn kernel<S: Simd>(
     simd: S,
     weights: &[f32],
     basis: &[f32],
-    confidence: f32,
+    share: f32,
     g: &[f32],
     dweights: &mut [f32],
     dbasis: &mut [f32],
@@ -36,8 +36,8 @@ fn kernel<S: Simd>(
         let weights = &weights[i * step..][..count];
         let dweights = &mut dweights[i * step..][..count];
         for (g, (basis, dbasis)) in g.iter().zip(basis.chunks_exact(count).zip(dbasis.chunks_exact_mut(count))) {
-            axpy(simd, confidence * g, basis, dweights);
-            axpy(simd, confidence * g, weights, dbasis);
+            axpy(simd, share * g, basis, dweights);
+            axpy(simd, share * g, weights, dbasis);
         }
     }
 }

@@ -74,9 +74,8 @@ pub(super) fn backward(tape: &Tape, step: &Step, shared: &Shared, lane: &mut Lan
         }
         Operation::Blend(it) => {
             lane.add_to(it.template, [it.weights, it.basis], |lane, g, [dweights, dbasis]| {
-                let [weights, basis, confidence] =
-                    [it.weights, it.basis, it.confidence].map(|id| lane.value(shared, id));
-                blend::blend(lane.level, weights, basis, confidence[0], g, dweights, dbasis);
+                let [weights, basis, share] = [it.weights, it.basis, it.share].map(|id| lane.value(shared, id));
+                blend::blend(lane.level, weights, basis, share[0], g, dweights, dbasis);
             });
         }
         Operation::Skin(it) => {

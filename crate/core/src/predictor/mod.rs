@@ -1,19 +1,38 @@
 //! A model ready to predict on the CPU: load once, then one call per frame without any allocation.
 
+mod folds;
+
 use crate::confidence::Confidence;
 use crate::cpu::{Cpu, Level};
 use crate::model::{HostModel, Sizes, Surface};
-use crate::network::{Activations, Streams, predict};
+use crate::network::{Activations, Streams, collide, finish, mesh, pose, predict, skeleton, skin};
+use crate::operation::Space;
 use crate::pose::{Rig, Transform};
 use crate::{Error, Result};
+pub use folds::Folds;
 use std::sync::Arc;
+
+/// How much of each residual a prediction shows, 0 to 1: quality is changed by fading, so that nothing jumps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shares {
+    /// Of the skeleton stream's.
+    pub skeleton: f32,
+    /// Of the mesh stream's.
+    pub mesh: f32,
+}
+
+impl Shares {
+    /// The whole of what the streams answer.
+    pub const ALL: Self = Self { skeleton: 1.0, mesh: 1.0 };
+}
 
 /// A model on the CPU device with every buffer it needs.
 pub struct Predictor {
     device: Cpu,
     model: Arc<HostModel>,
     activations: Activations<Vec<f32>>,
-    confidence: Option<Confidence>,
+    trust: Option<Confidence>,
+    confidence: f32,
 }
 
 impl Predictor {
@@ -25,10 +44,9 @@ impl Predictor {
     /// A model at a chosen SIMD level.
     pub fn from_model(model: HostModel, level: Level) -> Self {
         let device = Cpu::with_level(level);
-        let mut activations = Activations::new(&model, |_, length| vec![0.0; length]);
-        activations.confidence[0] = 1.0;
-        let confidence = Confidence::new(&model);
-        Self { device, model: Arc::new(model), activations, confidence }
+        let activations = Activations::new(&model, |_, length| vec![0.0; length]);
+        let trust = Confidence::new(&model);
+        Self { device, model: Arc::new(model), activations, trust, confidence: 1.0 }
     }
 
     /// The model, to be put on another device too.
@@ -73,23 +91,63 @@ impl Predictor {
 
     /// Joint world matrices [J, 16], column-major as in three.js, metres -> positions and normals.
     pub fn predict(&mut self, joints: &[f32], streams: Streams) -> Result<()> {
+        self.predict_faded(joints, streams, Shares::ALL)
+    }
+
+    /// The same with `shares` of the residuals.
+    pub fn predict_faded(&mut self, joints: &[f32], streams: Streams, shares: Shares) -> Result<()> {
         self.model.rig.read_column_major(joints, &mut self.activations.joints)?;
-        self.run(streams)
+        self.run(streams, shares)
+    }
+
+    /// The whole network for a cloth that has its mesh stream computed in some frames only: in this one if `aim`.
+    /// `step`: how much of the way to the last aim the cloth goes on, 1 / k for one that aims in every k-th frame.
+    pub fn predict_folds(
+        &mut self,
+        joints: &[f32],
+        folds: &mut Folds,
+        (aim, step): (bool, f32),
+        shares: Shares,
+    ) -> Result<()> {
+        self.model.rig.read_column_major(joints, &mut self.activations.joints)?;
+        self.weigh(shares);
+        let (device, model, a) = (&mut self.device, &*self.model, &mut self.activations);
+        pose(device, model, a);
+        skeleton(device, model, a);
+        if aim && model.mesh_stream {
+            mesh(device, model, a);
+            folds.aim(&a.mesh);
+        }
+        folds.show(step, &a.coarse, a.mesh_share[0], &mut a.template);
+        skin(device, &a.template, &model.skinning, &a.body_frame, Space::World, &mut a.positions);
+        collide(device, model, a);
+        finish(device, model, a);
+        self.check()
     }
 
     /// Joint world transforms [J, 3, 4], row-major, metres -> positions and normals.
     pub fn predict_row_major(&mut self, joints: &[f32], streams: Streams) -> Result<()> {
         self.model.rig.read(joints, &mut self.activations.joints)?;
-        self.run(streams)
+        self.run(streams, Shares::ALL)
+    }
+
+    fn run(&mut self, streams: Streams, shares: Shares) -> Result<()> {
+        self.weigh(shares);
+        predict(&mut self.device, &self.model, streams, &mut self.activations);
+        self.check()
+    }
+
+    /// What the residuals count in the pose that was read.
+    fn weigh(&mut self, shares: Shares) {
+        let a = &mut self.activations;
+        self.confidence = self.trust.as_mut().map_or(1.0, |trust| trust.of(&self.model.rig, &a.joints));
+        a.skeleton_share[0] = self.confidence * shares.skeleton;
+        a.mesh_share[0] = self.confidence * shares.mesh;
     }
 
     /// Weights and poses may be finite and yet overflow together; what comes out is checked, so that NaN never leaves.
-    fn run(&mut self, streams: Streams) -> Result<()> {
-        let a = &mut self.activations;
-        if let Some(confidence) = &mut self.confidence {
-            a.confidence[0] = confidence.of(&self.model.rig, &a.joints);
-        }
-        predict(&mut self.device, &self.model, streams, a);
+    fn check(&self) -> Result<()> {
+        let a = &self.activations;
         match a.positions.iter().position(|value| !value.is_finite()) {
             Some(element) => {
                 Err(Error::NotFinite { what: "positions".to_owned(), element, found: a.positions[element] })
@@ -101,7 +159,7 @@ impl Predictor {
     /// What the residuals were worth in the last pose: 1 among the poses seen in training, 0 far from them, where the
     /// cloth is skinned plainly; always 1 where the model does not say what it has seen.
     pub fn confidence(&self) -> f32 {
-        self.activations.confidence[0]
+        self.confidence
     }
 
     /// Predicted positions [n, 3], world, metres.

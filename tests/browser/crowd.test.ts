@@ -1,0 +1,30 @@
+// Fifty dressed characters on one page, in headless Chromium with its software renderer.
+import { afterAll, expect, beforeAll, test } from 'vitest';
+import { out, Site } from './page.js';
+
+let site: Site;
+beforeAll(async () => (site = await Site.open()));
+afterAll(() => site?.close());
+
+test('fifty in the coarse quality; auto gives some of them more, and what is out of sight nothing', async () => {
+  const { page, complaints } = await site.visit('crowd.html?quality=coarse');
+  const frames = (count: number) => page.waitForFunction((count) => window.ctsnCrowd!.frames >= count, count);
+  const tally = () => page.evaluate(() => window.ctsnCrowd!.tally);
+  await frames(4);
+  const { full, coarse, skinned } = await tally();
+  expect([full, skinned]).toEqual([0, 0]);
+  expect(coarse).toBeGreaterThan(30);
+  expect(coarse).toBeLessThan(50);
+  const milliseconds = await page.evaluate(() => window.ctsnCrowd!.milliseconds);
+  console.log(`${coarse} cloths in the coarse quality: ${milliseconds.toFixed(1)} ms of predictions per frame`);
+  await page.getByLabel('Auto', { exact: true }).check({ force: true });
+  // Enough for all drapes and a few of the folds.
+  await page.getByLabel('Milliseconds per frame').fill(String(Math.min(Math.ceil(1.3 * milliseconds), 60)));
+  // Some that try it, then the blend back.
+  await frames(24);
+  const auto = await tally();
+  expect(auto.full).toBeGreaterThan(0);
+  expect(auto.full).toBeLessThan(coarse);
+  await page.screenshot({ path: `${out}/crowd.png` });
+  expect(complaints).toEqual([]);
+});

@@ -1,0 +1,97 @@
+import { Streams, type Folds, type Predictor } from './raw.js';
+
+/**
+ * How much of the network a prediction takes: all of it; `coarse`, the skeleton stream alone, without the finest folds;
+ * or `skinned`, the garment at rest, moved by its joints.
+ */
+export type Quality = 'full' | 'coarse' | 'skinned';
+
+/** Shares of the residuals of skeleton and mesh stream that each quality shows. */
+const shares = { full: [1, 1], coarse: [1, 0], skinned: [0, 0] } as const;
+
+/**
+ * What one cloth shows of the network, on its way from one quality to another. A change is spread over `length`
+ * predictions, so that nothing jumps.
+ */
+export class Fade {
+  /** Predictions that a change of quality takes; 0: none, the next shows it. */
+  length = 12;
+  /** The mesh stream is computed in every so many predictions. The cloth goes from one of its answers to the next. */
+  every = 1;
+
+  #skeleton: number;
+  #mesh: number;
+  #folds: Folds | undefined;
+  /** Predictions since the mesh stream was computed. */
+  #since = 0;
+  #computed: Quality;
+  /** Whether a prediction was shown from which the next must not jump. */
+  #shown = false;
+
+  /** Cloths that have held folds so far: each is one prediction ahead of the last, so that they do not all compute at once. */
+  static #turn = 0;
+
+  /** @internal A cloth of that quality. */
+  constructor(quality: Quality) {
+    [this.#skeleton, this.#mesh] = shares[quality];
+    this.#computed = quality;
+  }
+
+  /** @internal What the last prediction had to compute. */
+  get computed(): Quality {
+    return this.#computed;
+  }
+
+  /** @internal The streams that have a share. */
+  get streams(): Streams {
+    if (this.#mesh > 0) return Streams.Both;
+    return this.#skeleton > 0 ? Streams.Skeleton : Streams.Rest;
+  }
+
+  /** @internal The share of the skeleton stream's residual. */
+  get skeleton(): number {
+    return this.#skeleton;
+  }
+
+  /** @internal The share of the mesh stream's residual. */
+  get mesh(): number {
+    return this.#mesh;
+  }
+
+  /** @internal One prediction nearer to `quality`. */
+  advance(quality: Quality): void {
+    const [skeleton, mesh] = shares[quality];
+    const step = this.#shown && this.length > 0 ? 1 / this.length : 1;
+    this.#shown = true;
+    this.#skeleton = toward(this.#skeleton, skeleton, step);
+    this.#mesh = toward(this.#mesh, mesh, step);
+  }
+
+  /** @internal Predicts the pose that `predictor` holds, on the CPU. False if that failed. */
+  predict(predictor: Predictor): boolean {
+    const { streams } = this;
+    if (streams !== Streams.Both || (this.every === 1 && !this.#folds)) {
+      this.dispose();
+      this.#computed = streams === Streams.Both ? 'full' : streams === Streams.Skeleton ? 'coarse' : 'skinned';
+      return predictor.predict(streams, this.#skeleton, this.#mesh);
+    }
+    // The first answer is shown at once: it is what is shown already, or it has hardly a share yet.
+    const first = !this.#folds;
+    this.#folds ??= predictor.folds();
+    const aim = first || ++this.#since >= this.every;
+    if (aim) this.#since = first ? Fade.#turn++ % this.every : 0;
+    this.#computed = aim ? 'full' : 'coarse';
+    return predictor.predict_folds(this.#folds, aim, first ? 1 : 1 / this.every, this.#skeleton, this.#mesh);
+  }
+
+  /** Frees its memory in the module. */
+  dispose(): void {
+    this.#folds?.free();
+    this.#folds = undefined;
+    this.#since = 0;
+  }
+}
+
+function toward(from: number, to: number, step: number): number {
+  return from < to ? Math.min(from + step, to) : Math.max(from - step, to);
+}

@@ -1,0 +1,69 @@
+// A crowd of the demo's character: `?count=50` says how many, `?quality=` and `?budget=` preset the controls.
+import { loadModel, type Quality } from 'ctsn';
+import { FileLoader } from 'three';
+import { Meter } from '../meter.js';
+import { element } from '../panel.js';
+import { Crowd } from './crowd.js';
+import type { CrowdHook } from './hook.js';
+
+const nobody = { full: 0, coarse: 0, skinned: 0 };
+const hook: CrowdHook = (window.ctsnCrowd = {
+  ready: false,
+  error: undefined,
+  frames: 0,
+  milliseconds: 0,
+  tally: nobody,
+});
+
+async function start(): Promise<void> {
+  const wanted = new URL(location.href).searchParams;
+  const base = import.meta.env.BASE_URL;
+  const [glb, model] = await Promise.all([
+    new FileLoader().setResponseType('arraybuffer').loadAsync(`${base}andy.glb`),
+    loadModel(`${base}tshirt.safetensors`),
+  ]);
+  const count = Number(wanted.get('count') ?? 50);
+  element('count').textContent = count === 50 ? 'Fifty' : String(count);
+  const crowd = await Crowd.gather(element<HTMLCanvasElement>('stage'), glb as ArrayBuffer, model, count);
+  const meter = new Meter();
+  element('loading').hidden = true;
+  element('panel').hidden = false;
+
+  const budget = element<HTMLInputElement>('budget');
+  const radios = [...document.querySelectorAll<HTMLInputElement>('input[name=quality]')];
+  const choose = () => {
+    crowd.wardrobe.budget = Number(budget.value);
+    crowd.choose(radios.find((radio) => radio.checked)!.value as Quality | 'auto');
+    element('milliseconds-wanted').textContent = `${budget.value} ms per frame`;
+    meter.reset();
+  };
+  budget.value = wanted.get('budget') ?? budget.value;
+  const preset = radios.find((radio) => radio.value === wanted.get('quality'));
+  if (preset) preset.checked = true;
+  for (const input of [budget, ...radios]) input.addEventListener('input', choose);
+  choose();
+
+  hook.ready = true;
+  let last: number | undefined;
+  crowd.renderer.setAnimationLoop((now: number) => {
+    const seconds = Math.min((now - (last ?? now)) / 1000, 0.1);
+    last = now;
+    crowd.frame(seconds);
+    meter.add(crowd.wardrobe.spent);
+    const { tally } = crowd.wardrobe;
+    Object.assign(hook, { frames: meter.count, milliseconds: meter.median, tally });
+    element('milliseconds').textContent = `${meter.median.toFixed(1)} ms`;
+    element('qualities').textContent = `${tally.full}, ${tally.coarse}, ${tally.skinned}`;
+  });
+}
+
+function fail(error: unknown): void {
+  hook.error = String(error);
+  element('loading').hidden = true;
+  element('failure').hidden = false;
+  element('failure-text').textContent = error instanceof Error ? error.message : String(error);
+}
+
+window.addEventListener('error', ({ error, message }) => fail(error ?? message));
+window.addEventListener('unhandledrejection', ({ reason }) => fail(reason));
+void start();
