@@ -14,6 +14,8 @@ export const out = `${root}out`;
 /** An open page and its complaints: console errors and warnings, exceptions, requests that failed. */
 export interface Visit {
   page: Page;
+  /** Names of the files it asked for. */
+  files: string[];
   complaints: string[];
 }
 
@@ -39,6 +41,8 @@ export class Site {
     // Rendered in software on a shared machine, the first picture, with its shaders, may take half a minute.
     page.setDefaultTimeout(120_000);
     const complaints: string[] = [];
+    const files: string[] = [];
+    page.on('request', (request) => files.push(new URL(request.url()).pathname.split('/').at(-1)!));
     page.on('console', (message) => {
       // Reading pixels back for a screenshot stalls a software renderer, and its driver says so.
       const harmless = message.text().includes('GPU stall due to ReadPixels');
@@ -50,7 +54,7 @@ export class Site {
     await prepare(page);
     await page.goto(new URL(query, this.#server.resolvedUrls!.local[0]).href);
     await page.waitForFunction(() => Boolean(window.ctsnDemo?.ready) || Boolean(window.ctsnDemo?.error));
-    return { page, complaints };
+    return { page, files, complaints };
   }
 
   /** Closes every page, so that none goes on drawing while the next is tested. */

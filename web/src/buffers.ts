@@ -1,4 +1,6 @@
-import { fromCore, type GpuPredictor, type Predictor, type Streams } from './raw.js';
+import { fromCore } from './module.js';
+import type { Streams } from './raw.js';
+import type { GpuPredictor } from './raw-gpu.js';
 
 /**
  * One cloth on the GPU: buffers that hold its last prediction, tightly packed, in metres. They can be used as vertex or
@@ -41,9 +43,13 @@ export class ClothBuffers {
     return this.#predictor?.confidence() ?? 1;
   }
 
-  /** @internal Submits a prediction of the pose that `cpu` holds. False if that failed: then `cpu` knows why. */
-  predict(cpu: Predictor, streams: Streams): boolean {
-    return this.#predictor!.predict(cpu, streams);
+  /** @internal Submits a prediction of `pose` [16·J]. */
+  predict(pose: Float32Array, streams: Streams): void {
+    try {
+      this.#predictor!.predict(pose, streams);
+    } catch (cause) {
+      throw fromCore(cause);
+    }
   }
 
   /** @internal Positions and normals of the last prediction. */
