@@ -15,6 +15,7 @@ pub struct Graph<I> {
 impl Graph<Vec<u32>> {
     /// Neighbour lists of the edges of `triangles` [t,3] over `n` vertices; every index must be below `n`.
     pub fn new(n: usize, triangles: &[u32]) -> Self {
+        // Rows that stay sorted: a sort of all edges would add 3 kB to what a page downloads.
         let mut rows = vec![Vec::new(); n];
         let mut add = |from: u32, to: u32| {
             let row = &mut rows[from as usize];
