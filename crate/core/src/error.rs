@@ -95,8 +95,8 @@ impl Error {
     }
 }
 
-/// A number in a message, to six decimals. `Display` of `f32` itself, exact for every number and format, would add 7 kB to
-/// what a page downloads.
+/// A number in a message, to six decimals. `Display` of `f32` itself, exact for every number and format, would add 7 kB
+/// to what a page downloads.
 pub(crate) struct Decimal(pub f32);
 
 impl fmt::Display for Decimal {

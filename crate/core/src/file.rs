@@ -112,8 +112,8 @@ impl Tensors {
         }
         // Shared bytes would let a small file grow without bound in memory.
         ranges.retain(|(range, _)| range[0] < range[1]);
-        // A heap, and below a map filled one by one: the sorts of slices, which `collect` uses too, would add 4 kB to what
-        // a page downloads.
+        // A heap, and below a map filled one by one: the sorts of slices, which `collect` uses too, would add 4 kB to
+        // what a page downloads.
         let ranges = BinaryHeap::from(ranges).into_sorted_vec();
         match ranges.array_windows().find(|[first, second]| second.0[0] < first.0[1]) {
             Some([first, second]) => Err(malformed(&format!("tensors {} and {} share bytes", first.1, second.1))),

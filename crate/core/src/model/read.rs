@@ -2,10 +2,10 @@
 
 use super::{Body, HostModel, Layer, Linear, Model, Reference, Sizes, Skinning, Surface};
 use super::{CLOTH_WEIGHTS, MESH_BASIS, SKELETON_BASIS};
+use crate::error::{Decimal, Error, Result};
 use crate::file::Tensors;
 use crate::pose::{Frame, Range, Rig, Transform};
 use crate::topology::Graph;
-use crate::error::{Decimal, Error, Result};
 use miniserde::{Deserialize, Serialize, json};
 use std::sync::Arc;
 
