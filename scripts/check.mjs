@@ -7,7 +7,7 @@ await main(async () => {
   const checks = [
     ['cargo', 'fmt', '--all', '--check'],
     ['cargo', 'clippy', '--workspace', '--release', '--all-targets', '--', '--deny', 'warnings'],
-    ['cargo', 'clippy', '--package', 'ctsn-wasm', '--profile', 'wasm', '--target', 'wasm32-unknown-unknown', '--', '--deny', 'warnings'],
+    ['cargo', 'clippy', '--package', 'ctsn-wasm', '--package', 'ctsn-wasm-gpu', '--profile', 'wasm', '--target', 'wasm32-unknown-unknown', '--', '--deny', 'warnings'],
     ['tsc', '-p', at('web', 'tests')],
     ['tsc', '-p', at('www')],
   ];

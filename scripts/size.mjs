@@ -4,7 +4,10 @@ import { pathToFileURL } from 'node:url';
 import { brotliCompressSync } from 'node:zlib';
 import { at, main } from './step.mjs';
 
-/** Minified JavaScript of an entry of the npm package, three.js left out, and the module's bytes. */
+/**
+ * Minified JavaScript of an entry of the npm package, three.js left out: what is loaded with it, and what only a GPU
+ * asks for.
+ */
 async function bundle(entry) {
   const { build } = await import('vite');
   const { output } = await build({
@@ -18,17 +21,26 @@ async function bundle(entry) {
       rolldownOptions: { input: at('web', 'dist', entry), external: ['three'], preserveEntrySignatures: 'strict' },
     },
   });
-  return Buffer.from(output.flatMap((part) => (part.type === 'chunk' ? [part.code] : [])).join('\n'));
+  const chunks = output.filter(({ type }) => type === 'chunk');
+  const code = (lazy) => Buffer.from(chunks.filter(({ isDynamicEntry }) => isDynamicEntry === lazy).map((chunk) => chunk.code).join('\n'));
+  return { javascript: code(false), lazy: code(true) };
 }
 
 const weigh = (bytes) => ({ raw: bytes.length, brotli: brotliCompressSync(bytes).length });
+const sum = (a, b) => ({ raw: a.raw + b.raw, brotli: a.brotli + b.brotli });
 
 /** Bytes by part: { raw, brotli }. */
 export async function measure() {
+  const module = (name) => weigh(readFileSync(at('web', 'dist', 'glue', `${name}_bg.wasm`)));
+  const [bare, adapter] = [await bundle('index.js'), await bundle('three/index.js')];
+  const [wasm, javascript] = [module('ctsn'), weigh(bare.javascript)];
   return {
-    wasm: weigh(readFileSync(at('web', 'dist', 'glue', 'ctsn_bg.wasm'))),
-    javascript: weigh(await bundle('index.js')),
-    'javascript with three adapter': weigh(await bundle('three/index.js')),
+    wasm,
+    javascript,
+    'wasm and javascript': sum(wasm, javascript),
+    'javascript with three adapter': weigh(adapter.javascript),
+    'wasm of WebGPU': module('ctsn_gpu'),
+    'javascript of WebGPU': weigh(bare.lazy),
   };
 }
 

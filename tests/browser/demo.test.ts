@@ -113,6 +113,20 @@ test('a failure is told on the page: no model, a broken model, no such clip', as
   for (const { complaints } of [missing, broken, nowhere]) expect(complaints.length).toBeGreaterThan(0);
 });
 
+test('what only WebGPU needs is fetched for a device, and never without one', async () => {
+  const ofGpu = (files: string[]) => files.filter((name) => name.includes('gpu')).map((name) => name.split('.').at(-1));
+  const onCpu = await site.visit();
+  expect(onCpu.files).toContainEqual(expect.stringMatching(/^ctsn_bg.*\.wasm$/));
+  expect(ofGpu(onCpu.files)).toEqual([]);
+  const none = 'GPU.prototype.requestAdapter = async () => null';
+  const without = await site.visit('?backend=auto', (bare) => bare.addInitScript(none));
+  await expect.poll(() => without.page.textContent('#reason'), patience).toContain('finds no adapter');
+  expect(ofGpu(without.files)).toEqual([]);
+  const onGpu = await site.visit('?backend=webgpu');
+  await expect.poll(() => onGpu.page.textContent('#backend'), patience).toMatch(/^WebGPU, ./);
+  expect(ofGpu(onGpu.files).sort()).toEqual(['js', 'wasm']);
+});
+
 test('the cloth is computed elsewhere at a click, and the page says where and why', async () => {
   const { page, complaints } = await site.visit();
   const [clip] = Object.keys(await ask(page, (demo) => demo.clips, null)) as [string];

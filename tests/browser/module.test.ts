@@ -1,4 +1,4 @@
-// The module as it is shipped: it holds the SIMD it claims, and a page downloads no more than the budget says.
+// The modules as they are shipped: the processor's holds the SIMD it claims, and a page downloads no more than the budget says.
 import { execFileSync } from 'node:child_process';
 import { expect, test } from 'vitest';
 import { budget, measure } from '../../scripts/size.mjs';
@@ -12,8 +12,6 @@ test('the kernels are compiled to simd128', () => {
   expect(count('f32x4.add')).toBeGreaterThan(50);
 });
 
-// 52 kB of the wasm and 6 kB of the JavaScript, after brotli, are WebGPU's. CPU and GPU share one module, so that the
-// CPU is there when a GPU device is lost.
 test('every part of the download is within its budget', async () => {
   const measured = await measure();
   expect(Object.keys(measured)).toEqual(Object.keys(budget));

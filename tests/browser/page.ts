@@ -15,6 +15,8 @@ export const out = `${root}out`;
 /** An open page and its complaints: console errors and warnings, exceptions, requests that failed. */
 export interface Visit {
   page: Page;
+  /** Names of the files it asked for. */
+  files: string[];
   complaints: string[];
 }
 
@@ -40,6 +42,8 @@ export class Site {
     // Rendered in software on a shared machine, the first picture, with its shaders, may take half a minute.
     page.setDefaultTimeout(120_000);
     const complaints: string[] = [];
+    const files: string[] = [];
+    page.on('request', (request) => files.push(new URL(request.url()).pathname.split('/').at(-1)!));
     page.on('console', (message) => {
       // Reading pixels back for a screenshot stalls a software renderer, and its driver says so.
       const harmless = message.text().includes('GPU stall due to ReadPixels');
@@ -54,7 +58,7 @@ export class Site {
       const hook = window.ctsnDemo ?? window.ctsnCrowd;
       return Boolean(hook?.ready) || Boolean(hook?.error);
     });
-    return { page, complaints };
+    return { page, files, complaints };
   }
 
   /** Closes every page, so that none goes on drawing while the next is tested. */

@@ -145,10 +145,10 @@ fn platforms_keep_to_their_crates() {
     let intrinsics = [concat!("std::", "arch"), concat!("core::", "arch"), concat!("_mm", "_"), concat!("_mm", "256_")];
     let (mut wasm, mut core) = (0, 0);
     for source in &tree() {
-        if source.path.starts_with("crate/wasm/") {
+        if ["crate/wasm/", "crate/wasm-gpu/"].iter().any(|path| source.path.starts_with(path)) {
             wasm += usize::from(source.text.contains(bindgen[0]));
         } else if source.path.starts_with("crate/") {
-            source.lacks(&bindgen, "only crate/wasm speaks to the browser");
+            source.lacks(&bindgen, "only crate/wasm and crate/wasm-gpu speak to the browser");
         }
         if source.path.starts_with("crate/core/src/") {
             core += 1;
@@ -158,7 +158,7 @@ fn platforms_keep_to_their_crates() {
             source.lacks(&intrinsics, "SIMD is written once, over a portable crate");
         }
     }
-    assert!(wasm > 0 && core > 10, "{wasm} files of crate/wasm, {core} of crate/core");
+    assert!(wasm > 0 && core > 10, "{wasm} files of crate/wasm and crate/wasm-gpu, {core} of crate/core");
 }
 
 /// `wrap` < `simulate` < `garment` within crate/cloth; tests dress what they simulate.
@@ -175,27 +175,38 @@ fn the_rooms_of_cloth_know_none_above_them() {
 }
 
 #[test]
-fn one_file_imports_the_glue() {
+fn one_file_imports_each_glue() {
     let tree = tree();
-    let imports = |source: &&Source| {
-        source.is_typescript()
-            && source.text.lines().any(|line| line.contains("import") && line.contains("/glue/ctsn.js"))
+    // Where a file is imported, at load or, by `import()`, when it is wanted; types alone load nothing.
+    let importers = |name: &str| -> Vec<&str> {
+        let imports = |line: &str| line.contains("import") && !line.contains("import type") && line.contains(name);
+        let files = tree.iter().filter(|source| source.is_typescript() && source.path.starts_with("web/src/"));
+        files.filter(|source| source.text.lines().any(imports)).map(|source| source.path.as_str()).collect()
     };
-    let found: Vec<&str> = tree.iter().filter(imports).map(|source| source.path.as_str()).collect();
-    assert_eq!(found, ["web/src/raw.ts"]);
+    assert_eq!(importers("/glue/ctsn.js"), ["web/src/raw.ts"]);
+    assert_eq!(importers("/glue/ctsn_gpu.js"), ["web/src/raw-gpu.ts"]);
+    assert_eq!(importers("/raw-gpu.js"), ["web/src/gpu-side.ts"]);
+    assert_eq!(importers("/gpu-side.js"), ["web/src/load.ts"]);
 }
 
 #[test]
-fn the_module_holds_no_authoring() {
-    let arguments = ["tree", "--locked", "--package", "ctsn-wasm", "--edges", "normal", "--prefix", "none"];
-    let list = say(env!("CARGO"), &[&arguments[..], &["--target", "wasm32-unknown-unknown"]].concat());
-    let packages: Vec<&str> = list.lines().filter_map(|line| line.split(' ').next()).collect();
-    assert!(packages.contains(&"ctsn-core") && packages.contains(&"wasm-bindgen"), "{packages:?}");
-    for package in
-        ["ctsn-rig", "ctsn-tests", "gltf", "faer", "clap", "rayon", "image", "serde_json", "naga", "wgpu-core"]
-    {
-        assert!(!packages.contains(&package), "ctsn-wasm depends on {package}");
-    }
+fn the_modules_hold_no_authoring_and_the_processors_no_gpu() {
+    let packages = |module: &str| -> Vec<String> {
+        let arguments = ["tree", "--locked", "--package", module, "--edges", "normal", "--prefix", "none"];
+        let list = say(env!("CARGO"), &[&arguments[..], &["--target", "wasm32-unknown-unknown"]].concat());
+        list.lines().filter_map(|line| Some(line.split(' ').next()?.to_owned())).collect()
+    };
+    let lacks = |module: &str, wanted: &[&str], unwanted: &[&str]| {
+        let packages = packages(module);
+        let has = |package: &&&str| packages.iter().any(|found| found == **package);
+        assert_eq!(wanted.iter().find(|package| !has(package)), None, "{module} depends on {packages:?}");
+        assert_eq!(unwanted.iter().find(has), None, "{module} depends on it");
+    };
+    let authoring =
+        ["ctsn-rig", "ctsn-tests", "gltf", "faer", "clap", "rayon", "image", "serde_json", "naga", "wgpu-core"];
+    let gpu = ["ctsn-gpu", "ctsn-shaders", "wgpu"];
+    lacks("ctsn-wasm", &["ctsn-core", "wasm-bindgen"], &[&authoring[..], &gpu].concat());
+    lacks("ctsn-wasm-gpu", &[&["ctsn-core", "wasm-bindgen"], &gpu[..]].concat(), &authoring);
 }
 
 #[test]

@@ -1,8 +1,9 @@
-import { ClothBuffers } from './buffers.js';
+import type { ClothBuffers } from './buffers.js';
 import { CtsnError } from './error.js';
-import { adopt, describe, lossOf, ownDevice } from './gpu.js';
+import { describe, lossOf, ownDevice } from './gpu.js';
+import type { GpuSide } from './gpu-side.js';
 import { Fade } from './quality.js';
-import { fromCore, GpuModel, Streams, type Predictor } from './raw.js';
+import { Streams, type Predictor } from './raw.js';
 
 /** Where a model computes. */
 export type Backend = 'cpu' | 'webgpu';
@@ -19,47 +20,8 @@ const PATIENCE = [0, 1, 2, 4, 8, 16, 32];
 /** The whole network. */
 const whole = /* @__PURE__ */ new Fade('full');
 
-/** The weights of a model on a device, and what was allocated for its cloths. */
-export class GpuSide {
-  readonly device: GPUDevice;
-  readonly #model: GpuModel;
-  readonly #allocated = new Set<ClothBuffers>();
-  #disposed = false;
-
-  private constructor(device: GPUDevice, model: GpuModel) {
-    this.device = device;
-    this.#model = model;
-  }
-
-  /** Uploads the weights of the model that `cpu` has. */
-  static async open(cpu: Predictor, device: GPUDevice): Promise<GpuSide> {
-    try {
-      return new GpuSide(device, await GpuModel.load(await adopt(device), cpu));
-    } catch (cause) {
-      throw fromCore(cause);
-    }
-  }
-
-  async allocate(): Promise<ClothBuffers> {
-    const predictor = await this.#model.predictor().catch((cause: unknown) => {
-      throw fromCore(cause);
-    });
-    const buffers = new ClothBuffers(predictor, this.device);
-    if (this.#disposed) {
-      buffers.dispose();
-      throw new CtsnError('lost', 'the model left the GPU while buffers were made');
-    }
-    for (const old of this.#allocated) if (old.disposed) this.#allocated.delete(old);
-    this.#allocated.add(buffers);
-    return buffers;
-  }
-
-  dispose(): void {
-    this.#disposed = true;
-    for (const buffers of this.#allocated) buffers.dispose();
-    this.#model.free();
-  }
-}
+/** Puts the model on a device. WebGPU's part of the package is fetched by this, never before. */
+export type Opener = (device: GPUDevice) => Promise<GpuSide>;
 
 /** A model in use on the GPU. */
 export interface Running {
@@ -81,7 +43,8 @@ export class Switch {
   measured: Measured | undefined;
 
   readonly #cpu: Predictor;
-  readonly #aside: <T>(work: () => T) => T;
+  readonly #openSide: Opener;
+  readonly #aside: <T>(work: (pose: Float32Array) => T) => T;
   readonly #changed: () => void;
   /**
    * The decision in force. The next one aborts it: what was begun under it has no say, and its listeners are removed.
@@ -89,8 +52,14 @@ export class Switch {
   #decision = new AbortController();
 
   /** `aside` runs predictions of a pose of ours unseen by callers; `changed` hears of every change. */
-  constructor(cpu: Predictor, aside: <T>(work: () => T) => T, changed: () => void) {
+  constructor(
+    cpu: Predictor,
+    openSide: Opener,
+    aside: <T>(work: (pose: Float32Array) => T) => T,
+    changed: () => void,
+  ) {
     this.#cpu = cpu;
+    this.#openSide = openSide;
     this.#aside = aside;
     this.#changed = changed;
   }
@@ -126,7 +95,7 @@ export class Switch {
   async #open(decision: AbortSignal, choice: BackendChoice, lent?: GPUDevice): Promise<void> {
     const device = lent ?? (await ownDevice());
     this.adapter = describe(device.adapterInfo);
-    const side = await GpuSide.open(this.#cpu, device);
+    const side = await this.#openSide(device);
     try {
       const buffers = await side.allocate();
       const slower = choice === 'auto' && !decision.aborted && (await this.#measure(buffers));
@@ -182,9 +151,8 @@ export class Switch {
   async #measure(buffers: ClothBuffers): Promise<string | undefined> {
     // `time` makes all its calls before it first waits, so that each measurement is aside as a whole.
     const predict = () => this.#cpu.predict(Streams.Both, 1, 1);
-    const submit = () => buffers.predict(this.#cpu, whole);
     const onCpu = (calls: number) => this.#aside(() => time(calls, predict, () => Promise.resolve()));
-    const onGpu = (calls: number) => this.#aside(() => time(calls, submit, () => buffers.read()));
+    const onGpu = (calls: number) => this.#aside((pose) => time(calls, () => buffers.predict(pose, whole), () => buffers.read()));
     await onCpu(1);
     const cpu = await onCpu(4);
     // In a single prediction the way back weighs most. Where that does not explain the difference, measuring ends

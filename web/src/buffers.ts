@@ -1,5 +1,6 @@
+import { fromCore } from './module.js';
 import type { Fade } from './quality.js';
-import { fromCore, type GpuPredictor, type Predictor } from './raw.js';
+import type { GpuPredictor } from './raw-gpu.js';
 
 /**
  * One cloth on the GPU: buffers that hold its last prediction, tightly packed, in metres. They can be used as vertex or
@@ -42,9 +43,13 @@ export class ClothBuffers {
     return this.#predictor?.confidence() ?? 1;
   }
 
-  /** @internal Submits a prediction of the pose that `cpu` holds. False if that failed: then `cpu` knows why. */
-  predict(cpu: Predictor, { streams, skeleton, mesh }: Fade): boolean {
-    return this.#predictor!.predict(cpu, streams, skeleton, mesh);
+  /** @internal Submits a prediction of `pose` [16·J]. */
+  predict(pose: Float32Array, { streams, skeleton, mesh }: Fade): void {
+    try {
+      this.#predictor!.predict(pose, streams, skeleton, mesh);
+    } catch (cause) {
+      throw fromCore(cause);
+    }
   }
 
   /** @internal Positions and normals of the last prediction. */

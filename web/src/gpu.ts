@@ -1,43 +1,7 @@
 import { CtsnError } from './error.js';
-import { Gpu } from './raw.js';
 
-const adopted = new WeakMap<GPUDevice, Promise<Gpu>>();
 const losses = new WeakMap<GPUDevice, AbortSignal>();
 let own: Promise<GPUDevice> | undefined;
-
-/**
- * The module's side of a device, with the pipelines compiled on it: one for all models of a page. An adoption that
- * failed may be tried again.
- */
-export function adopt(device: GPUDevice): Promise<Gpu> {
-  let gpu = adopted.get(device);
-  if (!gpu) {
-    gpu = handOver(device).catch((error: unknown) => {
-      adopted.delete(device);
-      throw error;
-    });
-    adopted.set(device, gpu);
-  }
-  return gpu;
-}
-
-/**
- * wgpu cannot be given a device; it asks `navigator.gpu` for one, and reads that property once, during this very call.
- * So for the length of the call an own property of `navigator` hides the real one: its only adapter has only this
- * device.
- */
-function handOver(device: GPUDevice): Promise<Gpu> {
-  const { features, limits, adapterInfo } = device;
-  const adapter = { features, limits, info: adapterInfo, requestDevice: () => Promise.resolve(device) };
-  const { wgslLanguageFeatures } = navigator.gpu;
-  const shim = { wgslLanguageFeatures, requestAdapter: () => Promise.resolve(adapter) };
-  Object.defineProperty(navigator, 'gpu', { value: shim, configurable: true });
-  try {
-    return Gpu.adopt();
-  } finally {
-    delete (navigator as { gpu?: GPU }).gpu;
-  }
-}
 
 /** A device of our own, one for all models of a page, asked for anew after it was lost. */
 export function ownDevice(): Promise<GPUDevice> {

@@ -7,4 +7,4 @@ export type { Backend, BackendChoice, Measured } from './backend.js';
 export { CtsnError, type CtsnErrorCode } from './error.js';
 export type { Matrix, Pose } from './pose.js';
 export type { DownloadOptions, Progress } from './download.js';
-export type { WasmSource } from './raw.js';
+export type { WasmSource } from './module.js';

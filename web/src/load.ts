@@ -1,13 +1,17 @@
-import type { BackendChoice } from './backend.js';
+import type { BackendChoice, Opener } from './backend.js';
 import { download, type DownloadOptions } from './download.js';
 import { CtsnError } from './error.js';
+import { ownDevice } from './gpu.js';
 import { ClothModel, type CpuClothModel } from './model.js';
-import { readModel, startModule, type WasmSource } from './raw.js';
+import type { WasmSource } from './module.js';
+import { readModel, startModule } from './raw.js';
 
 /** How to load a model. */
 export interface LoadOptions extends DownloadOptions {
-  /** The WebAssembly module, where the bundler or the page must say: an address, its bytes, or the compiled module. */
+  /** The processor's module, where the bundler or the page must say: an address, its bytes, or the compiled module. */
   wasm?: WasmSource | undefined;
+  /** Likewise WebGPU's module, which is loaded when a model first computes on a GPU, and never before. */
+  gpuWasm?: WasmSource | undefined;
 }
 
 /** How to load a model that may compute on the GPU. */
@@ -34,8 +38,11 @@ export async function loadModel(
   source: ModelSource,
   options: LoadOptions & { backend?: BackendChoice | undefined; device?: GPUDevice | undefined } = {},
 ): Promise<ClothModel> {
-  const [memory, bytes] = await Promise.all([startModule(options.wasm), read(source, options)]);
-  const model = new ClothModel(readModel(bytes), memory);
+  if (options.backend === 'auto' || options.backend === 'webgpu') prepare(options.device, options.gpuWasm);
+  const [{ memory }, file] = await Promise.all([startModule(options.wasm), read(source, options)]);
+  const openSide: Opener = async (device) =>
+    (await import('./gpu-side.js')).GpuSide.open(file, device, options.gpuWasm);
+  const model = new ClothModel(readModel(file), memory, openSide);
   try {
     await model.setBackend(options.backend ?? 'cpu', options.device);
   } catch (error) {
@@ -45,12 +52,25 @@ export async function loadModel(
   return model;
 }
 
+/**
+ * Fetches WebGPU's part while the model comes, once there is a device for it. What fails here fails again where it is
+ * needed, and is told there.
+ */
+function prepare(device: GPUDevice | undefined, wasm: WasmSource | undefined): void {
+  const start = async () => {
+    if (!device) await ownDevice();
+    await (await import('./gpu-side.js')).startGpuModule(wasm);
+  };
+  start().catch(() => undefined);
+}
+
 /** A model file: its address, or its bytes. */
 export type ModelSource = string | URL | ArrayBuffer | Uint8Array;
 
+/** The file's bytes, ours: a model that changes to a GPU later reads them once more. */
 async function read(source: ModelSource, options: DownloadOptions): Promise<Uint8Array> {
-  if (source instanceof Uint8Array) return source;
-  if (source instanceof ArrayBuffer) return new Uint8Array(source);
+  if (source instanceof Uint8Array) return source.slice();
+  if (source instanceof ArrayBuffer) return new Uint8Array(source.slice());
   if (typeof source === 'string' || source instanceof URL) return download(source, options);
   throw new CtsnError('argument', `a model is an address, an ArrayBuffer or a Uint8Array, not ${typeof source}`);
 }

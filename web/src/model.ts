@@ -1,9 +1,10 @@
-import { Switch, type Backend, type BackendChoice, type Measured } from './backend.js';
+import { Switch, type Backend, type BackendChoice, type Measured, type Opener } from './backend.js';
 import type { ClothBuffers } from './buffers.js';
 import { CtsnError } from './error.js';
+import { fromCore } from './module.js';
 import { writePose, type Pose } from './pose.js';
 import { Fade, type Quality } from './quality.js';
-import { fromCore, type Predictor } from './raw.js';
+import type { Predictor } from './raw.js';
 
 /** How to predict. */
 export interface PredictOptions {
@@ -80,13 +81,14 @@ export class ClothModel extends EventTarget {
   #pose = new Float32Array();
 
   /** @internal */
-  constructor(predictor: Predictor, memory: WebAssembly.Memory) {
+  constructor(predictor: Predictor, memory: WebAssembly.Memory, openSide: Opener) {
     super();
     this.#predictor = predictor;
     this.#memory = memory;
     this.#switch = new Switch(
       predictor,
-      (work) => this.#aside(restPose(this.joints.length), work),
+      openSide,
+      (work) => this.#aside(restPose(this.joints.length), () => work(this.#pose)),
       () => this.dispatchEvent(new Event('backend')),
     );
     this.joints = Object.freeze(predictor.joints());
@@ -167,12 +169,11 @@ export class ClothModel extends EventTarget {
       const found = String(options?.quality);
       throw new CtsnError('argument', `quality: "full", "coarse" or "skinned" wanted, "${found}" found`);
     }
-    const predictor = this.#alive();
+    this.#alive();
     writePose(pose, this.joints, this.#pose);
     const buffers = options?.backend === 'cpu' ? undefined : this.#buffers(options?.buffers);
-    if (buffers?.predict(predictor, fade)) return options?.output === 'gpu' ? buffers : this.#read(buffers, fade);
     if (buffers) {
-      this.#fail(fromCore(predictor.take_failure()));
+      if (this.#submit(buffers, fade)) return options?.output === 'gpu' ? buffers : this.#read(buffers, fade);
       // Whoever heard of that may have predicted another pose.
       this.#alive();
       writePose(pose, this.joints, this.#pose);
@@ -202,6 +203,17 @@ export class ClothModel extends EventTarget {
     const { running } = this.#switch;
     const buffers = wanted ?? running?.buffers;
     return running && !buffers!.disposed ? buffers : undefined;
+  }
+
+  /** Submits, on the GPU, the pose that was written. False if the GPU fails. */
+  #submit(buffers: ClothBuffers, fade: Fade): boolean {
+    try {
+      buffers.predict(this.#pose, fade);
+      return true;
+    } catch (error) {
+      this.#fail(error);
+      return false;
+    }
   }
 
   /** Waits for the prediction just submitted. If the GPU fails meanwhile, the CPU predicts the same pose. */

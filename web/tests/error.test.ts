@@ -3,6 +3,7 @@ import { readFileSync } from 'node:fs';
 import type { AddressInfo } from 'node:net';
 import { afterAll, beforeAll, expect, test, vi } from 'vitest';
 import { CtsnError, loadModel, type ClothModel, type Pose } from 'ctsn';
+import { FakeNavigator } from './fake-gpu.js';
 import { bytesOf, loadGolden } from './golden.js';
 
 const whole = bytesOf('small');
@@ -143,5 +144,14 @@ test('the module may be given; one that is broken is refused, and the next try m
   const wasm = new WebAssembly.Module(readFileSync(new URL('../dist/glue/ctsn_bg.wasm', import.meta.url)));
   const model = await fresh.loadModel(whole, { wasm });
   expect(model.vertexCount).toBe(600);
+  model.dispose();
+});
+
+test("WebGPU's module may be given; with one that is broken the CPU computes, and the model says why", async () => {
+  vi.stubGlobal('navigator', new FakeNavigator());
+  const model = await loadModel(whole, { backend: 'webgpu', gpuWasm: new Uint8Array([0, 97, 115, 109, 1]) });
+  vi.unstubAllGlobals();
+  expect(model.backend).toBe('cpu');
+  expect(model.fallback).toMatch(/the WebAssembly module does not start/);
   model.dispose();
 });

@@ -1,9 +1,11 @@
-// A GPU in Node: what stands for the module's GPU classes and for the browser's devices. It predicts on the CPU; its
-// answers come back when, and as, a test says.
-import type { Predictor, Streams } from '../dist/raw.js';
+// A GPU in Node: what stands for WebGPU's module and for the browser's devices. It predicts nothing; its answers come
+// back when, and as, a test says.
+import { readModel, type Streams } from '../dist/raw.js';
 
 /** What a test decides, and what it may look at. */
 export const gpu = {
+  /** How often the module was started. */
+  started: 0,
   /** How often the next adoptions of a device are refused. */
   refusals: 0,
   /** Whether answers wait in `answers` for the test, or come by themselves. */
@@ -20,7 +22,12 @@ function coreError(code: string): Error {
   return Object.assign(new Error(`${code}, says the fake GPU`), { name: code });
 }
 
-/** Stands for the class of this name in raw.ts, as the next one does. */
+/** Stands for the function of this name in raw-gpu.ts, as the next two do for classes. */
+export function startGpuModule(): Promise<void> {
+  gpu.started++;
+  return Promise.resolve();
+}
+
 export class Gpu {
   static adopt(): Promise<Gpu> {
     return gpu.refusals-- > 0 ? Promise.reject(coreError('refused')) : Promise.resolve(new Gpu());
@@ -28,8 +35,11 @@ export class Gpu {
 }
 
 export class GpuModel {
-  static load(_: Gpu, cpu: Predictor): Promise<GpuModel> {
-    return Promise.resolve(new GpuModel(3 * cpu.vertex_count()));
+  static load(_: Gpu, file: Uint8Array): Promise<GpuModel> {
+    const predictor = readModel(file);
+    const numbers = 3 * predictor.vertex_count();
+    predictor.free();
+    return Promise.resolve(new GpuModel(numbers));
   }
 
   private constructor(private readonly numbers: number) {}
@@ -44,12 +54,12 @@ export class GpuModel {
 class GpuPredictor {
   constructor(private readonly numbers: number) {}
 
-  predict(cpu: Predictor, streams: Streams, skeleton: number, mesh: number): boolean {
+  predict(pose: Float32Array, streams: Streams, _skeleton: number, _mesh: number): void {
     gpu.submitted.push(streams);
-    const code = gpu.submitting();
-    if (!code) return cpu.predict(streams, skeleton, mesh);
-    cpu.take_failure = () => coreError(code);
-    return false;
+    // As the module does, it takes a copy of the pose before anything else happens.
+    const refused = pose.every(Number.isFinite) ? undefined : 'not_finite';
+    const code = gpu.submitting() ?? refused;
+    if (code) throw coreError(code);
   }
 
   read(): Promise<[Float32Array, Float32Array]> {
@@ -99,6 +109,8 @@ export class FakeDevice extends EventTarget {
 /** The browser's `navigator`, whose adapter hands out new devices: `devices`, in their order. */
 export class FakeNavigator {
   readonly devices: FakeDevice[] = [];
+  /** Whether there is an adapter. */
+  adapter = true;
 
   // On the prototype, as in a browser, where an own property hides it for a moment.
   get gpu(): object {
@@ -108,6 +120,6 @@ export class FakeNavigator {
       return Promise.resolve(device);
     };
     const adapter = { limits: {}, info: {}, requestDevice };
-    return { wgslLanguageFeatures: new Set(), requestAdapter: () => Promise.resolve(adapter) };
+    return { wgslLanguageFeatures: new Set(), requestAdapter: () => Promise.resolve(this.adapter ? adapter : null) };
   }
 }

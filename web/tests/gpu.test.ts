@@ -2,7 +2,7 @@
 import { getEventListeners } from 'node:events';
 import { MeshBasicMaterial } from 'three';
 import { afterEach, beforeEach, expect, test, vi } from 'vitest';
-import { loadModel, type ClothModel, type Frame } from 'ctsn';
+import { loadModel, type BackendChoice, type ClothModel, type Frame, type GpuLoadOptions } from 'ctsn';
 import { Cloth } from 'ctsn/three';
 import { startModule } from '../dist/raw.js';
 import { difference } from '../../tests/browser/safetensors.js';
@@ -11,16 +11,13 @@ import { characterOf } from './character.js';
 import { FakeDevice, FakeNavigator, gpu } from './fake-gpu.js';
 import { bytesOf, loadConfident, readGolden } from './golden.js';
 
-vi.mock('../dist/raw.js', async (original) => {
-  const { Gpu, GpuModel } = await import('./fake-gpu.js');
-  return { ...(await original<object>()), Gpu, GpuModel };
-});
+vi.mock('../dist/raw-gpu.js', () => import('./fake-gpu.js'));
 
 const tiny = readGolden('tiny');
 let browser: FakeNavigator;
 
 beforeEach(() => {
-  Object.assign(gpu, { refusals: 0, held: false, answers: [], submitted: [], submitting: () => undefined });
+  Object.assign(gpu, { started: 0, refusals: 0, held: false, answers: [], submitted: [], submitting: () => undefined });
   vi.stubGlobal('navigator', (browser = new FakeNavigator()));
 });
 afterEach(async () => {
@@ -30,11 +27,36 @@ afterEach(async () => {
   vi.unstubAllGlobals();
 });
 
+const noAdapter = 'WebGPU finds no adapter on this machine';
+
 /** Waits until everything that is ready to happen has happened. */
 const turn = () => new Promise((resolve) => setTimeout(resolve));
 
 const load = (device?: FakeDevice): Promise<ClothModel> =>
   loadModel(bytesOf('tiny'), { backend: 'webgpu', device: device?.lent });
+
+test("WebGPU's module is started for a device, and never without one", async () => {
+  browser.adapter = false;
+  const begin = (backend: BackendChoice) => loadModel(bytesOf('tiny'), { backend });
+  const [cpu, auto, webgpu] = await Promise.all([begin('cpu'), begin('auto'), begin('webgpu')]);
+  await turn();
+  expect([cpu.fallback, auto.fallback, webgpu.fallback]).toEqual([undefined, noAdapter, noAdapter]);
+  expect(gpu.started).toBe(0);
+  browser.adapter = true;
+  await cpu.setBackend('webgpu');
+  expect(cpu.backend).toBe('webgpu');
+  expect(gpu.started).toBe(1);
+  for (const model of [cpu, auto, webgpu]) model.dispose();
+});
+
+test('a model that goes to a GPU later needs the bytes of its caller no more', async () => {
+  const bytes = bytesOf('tiny');
+  const model = await loadModel(bytes, { backend: 'cpu' } as GpuLoadOptions);
+  bytes.fill(0);
+  await model.setBackend('webgpu');
+  expect([model.backend, model.fallback]).toEqual(['webgpu', undefined]);
+  model.dispose();
+});
 
 /** A cloth with two predictions on their way back and a third, of another quality, skipped. */
 async function dressLate(): Promise<{ model: ClothModel; cloth: Cloth }> {
@@ -121,7 +143,7 @@ test('the CPU answers for a GPU that failed, and leaves a prediction alone that 
 });
 
 test('the CPU answers for the right pose, although the memory grew while the prediction was submitted', async () => {
-  const memory = await startModule();
+  const { memory } = await startModule();
   const model = await load(new FakeDevice('lent'));
   gpu.held = true;
   gpu.submitting = () => void memory.grow(1);
@@ -133,7 +155,7 @@ test('the CPU answers for the right pose, although the memory grew while the pre
 });
 
 test('the CPU answers at once where the GPU takes no prediction, whatever a listener predicts meanwhile', async () => {
-  const memory = await startModule();
+  const { memory } = await startModule();
   const model = await load(new FakeDevice('lent'));
   model.addEventListener('backend', () => void model.predictCloth(tiny.poses[1]!));
   gpu.submitting = () => {

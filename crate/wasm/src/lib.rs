@@ -1,12 +1,9 @@
-//! The boundary to JavaScript: `ctsn_core::Predictor` here, that of `ctsn_gpu` in `gpu.rs`. No arithmetic. The other
-//! side of it is `web/src/raw.ts`, the one file that imports the glue which wasm-bindgen generates.
+//! The boundary to JavaScript of `ctsn_core::Predictor`: no arithmetic. The other side of it is `web/src/raw.ts`, the
+//! one file that imports the glue which wasm-bindgen generates. WebGPU is a module of its own: `crate/wasm-gpu`.
 // On other targets there is no JavaScript.
 #![cfg(target_arch = "wasm32")]
 
-mod gpu;
-
-use ctsn_core::Shares;
-use ctsn_gpu::Error;
+use ctsn_core::{Error, Shares};
 use wasm_bindgen::prelude::*;
 
 /// Which of the network's streams act.
@@ -31,7 +28,7 @@ impl From<Streams> for ctsn_core::Streams {
     }
 }
 
-/// A JavaScript `Error` whose `name` is the stable code of the core or of the GPU device.
+/// A JavaScript `Error` whose `name` is the stable code of the core.
 fn to_js(error: &Error) -> js_sys::Error {
     let js = js_sys::Error::new(&error.to_string());
     js.set_name(error.kind());
@@ -64,7 +61,7 @@ impl Predictor {
     /// A JavaScript `Error` whose `name` is the code of what is wrong with the file.
     #[wasm_bindgen(constructor)]
     pub fn new(bytes: Vec<u8>) -> Result<Predictor, js_sys::Error> {
-        let inner = ctsn_core::Predictor::new(&bytes).map_err(|error| to_js(&error.into()))?;
+        let inner = ctsn_core::Predictor::new(&bytes).map_err(|error| to_js(&error))?;
         let pose = vec![0.0; inner.joints().len() * 16];
         Ok(Self { inner, pose, failure: None })
     }
@@ -130,7 +127,7 @@ impl Predictor {
     /// prediction shall allocate nothing.
     pub fn predict(&mut self, streams: Streams, skeleton: f32, mesh: f32) -> bool {
         let shares = Shares { skeleton, mesh };
-        self.failure = self.inner.predict_faded(&self.pose, streams.into(), shares).err().map(Error::from);
+        self.failure = self.inner.predict_faded(&self.pose, streams.into(), shares).err();
         self.failure.is_none()
     }
 

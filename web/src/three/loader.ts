@@ -3,17 +3,19 @@ import type { BackendChoice } from '../backend.js';
 import type { Progress } from '../download.js';
 import { loadModel } from '../load.js';
 import type { ClothModel } from '../model.js';
-import type { WasmSource } from '../raw.js';
+import type { WasmSource } from '../module.js';
 
 /** `loadModel` as a three.js loader, with its path, loading manager, request headers and credentials. */
 export class ClothLoader extends Loader<ClothModel> {
   #wasm: WasmSource | undefined;
+  #gpuWasm: WasmSource | undefined;
   #backend: BackendChoice = 'cpu';
   #device: GPUDevice | undefined;
 
-  /** Where the WebAssembly module comes from, if not from beside the package's files. */
-  setWasm(source: WasmSource): this {
+  /** Where the WebAssembly modules come from, the processor's and WebGPU's, if not from beside the package's files. */
+  setWasm(source: WasmSource, gpuSource?: WasmSource): this {
     this.#wasm = source;
+    this.#gpuWasm = gpuSource;
     return this;
   }
 
@@ -36,6 +38,7 @@ export class ClothLoader extends Loader<ClothModel> {
       backend: this.#backend,
       device: this.#device,
       wasm: this.#wasm,
+      gpuWasm: this.#gpuWasm,
       request: { headers: this.requestHeader, credentials } satisfies RequestInit,
       onProgress: (progress: Progress) => onProgress?.(toEvent(progress)),
     };

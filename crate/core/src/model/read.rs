@@ -2,10 +2,10 @@
 
 use super::{Body, HostModel, Layer, Linear, Model, Reference, Sizes, Skinning, Surface};
 use super::{CLOTH_WEIGHTS, MESH_BASIS, SKELETON_BASIS};
+use crate::error::{Decimal, Error, Result};
 use crate::file::Tensors;
 use crate::pose::{Frame, Range, Rig, Transform};
 use crate::topology::Graph;
-use crate::{Error, Result};
 use miniserde::{Deserialize, Serialize, json};
 use std::sync::Arc;
 
@@ -117,7 +117,8 @@ fn range(file: &Tensors, inverse_bind: &[Transform]) -> Result<Option<Range>> {
     match min.iter().zip(&max).position(|(min, max)| min > max) {
         Some(element) => Err(Error::NotModel(format!(
             "pose.min is above pose.max at element {element}: {} and {}",
-            min[element], max[element]
+            Decimal(min[element]),
+            Decimal(max[element])
         ))),
         None => Ok(Some(Range::new(inverse_bind, min, max))),
     }

@@ -1,15 +1,35 @@
-//! The GPU's part of the boundary. What takes time is a promise that borrows nothing, so that JavaScript may call and
-//! free these objects meanwhile.
+//! The boundary to JavaScript of `ctsn_gpu`, a module of its own beside that of `crate/wasm`, with a memory of its own.
+//! What takes time is a promise that borrows nothing, so that JavaScript may call and free these objects meanwhile. The
+//! other side of it is `web/src/raw-gpu.ts`, the one file that imports this module's glue.
+// On other targets there is no JavaScript.
+#![cfg(target_arch = "wasm32")]
 
-use crate::{Predictor, Streams, to_js};
-use ctsn_core::Shares;
+use ctsn_core::model::HostModel;
+use ctsn_core::{Shares, Streams};
+use ctsn_gpu::Error;
 use js_sys::futures::future_to_promise;
 use js_sys::{Array, Float32Array, Promise};
 use wasm_bindgen::prelude::*;
 
+/// The network's streams by their numbers in `crate/wasm`.
+const STREAMS: [Streams; 3] = [Streams::Both, Streams::Skeleton, Streams::Rest];
+
+/// A JavaScript `Error` whose `name` is the stable code of the core or of the GPU device.
+fn to_js(error: &Error) -> js_sys::Error {
+    let js = js_sys::Error::new(&error.to_string());
+    js.set_name(error.kind());
+    js
+}
+
 /// A promise of the outcome of `work`. It rejects with a JavaScript `Error` whose `name` is a stable code.
 fn promise<T: Into<JsValue>>(work: impl Future<Output = ctsn_gpu::Result<T>> + 'static) -> Promise {
     future_to_promise(async move { work.await.map(Into::into).map_err(|error| to_js(&error).into()) })
+}
+
+/// Has a panic, which would be a fault of ours, reported on the console with its place in the source.
+#[wasm_bindgen(start)]
+pub fn start() {
+    console_error_panic_hook::set_once();
 }
 
 /// A device of the page, with the pipelines compiled on it.
@@ -32,11 +52,11 @@ pub struct GpuModel(ctsn_gpu::Model);
 
 #[wasm_bindgen]
 impl GpuModel {
-    /// Uploads the weights of `predictor`'s model.
+    /// Reads a model file and uploads its weights.
     #[wasm_bindgen(unchecked_return_type = "Promise<GpuModel>")]
-    pub fn load(gpu: &Gpu, predictor: &Predictor) -> Promise {
-        let (gpu, model) = (gpu.0.clone(), predictor.inner.model().clone());
-        promise(async move { ctsn_gpu::Model::new(&gpu, &model).await.map(Self) })
+    pub fn load(gpu: &Gpu, bytes: &[u8]) -> Promise {
+        let (gpu, model) = (gpu.0.clone(), HostModel::parse(bytes));
+        promise(async move { ctsn_gpu::Model::new(&gpu, &model?).await.map(Self) })
     }
 
     /// Room for one cloth, warmed up.
@@ -53,15 +73,17 @@ pub struct GpuPredictor(ctsn_gpu::Predictor);
 
 #[wasm_bindgen]
 impl GpuPredictor {
-    /// Submits the prediction for the pose at `cpu.pose_address()`, where `cpu` is of the same model. False if that
-    /// failed: then `cpu.take_failure()` says why. Shares as in [`Predictor::predict`].
-    pub fn predict(&mut self, cpu: &mut Predictor, streams: Streams, skeleton: f32, mesh: f32) -> bool {
+    /// Submits the prediction for the joint world matrices `pose` [16·J], column-major, metres, with those shares of the
+    /// two streams' residuals.
+    ///
+    /// # Errors
+    /// A JavaScript `Error` whose `name` is the code of what is wrong with the pose or the device.
+    pub fn predict(&mut self, pose: &[f32], streams: usize, skeleton: f32, mesh: f32) -> Result<(), js_sys::Error> {
         let shares = Shares { skeleton, mesh };
-        cpu.failure = self.0.predict_faded(&cpu.pose, streams.into(), shares).err();
-        cpu.failure.is_none()
+        self.0.predict_faded(pose, STREAMS[streams], shares).map_err(|error| to_js(&error))
     }
 
-    /// [`Predictor::confidence`] of the pose last submitted.
+    /// How much of the network's folds the prediction last submitted shows, as on the processor.
     pub fn confidence(&self) -> f32 {
         self.0.confidence()
     }
