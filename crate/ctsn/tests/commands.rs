@@ -63,10 +63,10 @@ fn models_that_are_none_are_refused() {
         ("poses", &["not a ctsn model", "__metadata__ has no key ctsn"]),
         ("none", &["No such file"]),
     ] {
-        let name = format!("{file}.safetensors");
-        let says = [says, &[&name]].concat();
-        folder.refuses(&format!("inspect {file}.safetensors"), &says);
-        folder.refuses(&format!("predict {file}.safetensors poses.safetensors -o out.safetensors"), &says);
+        let (name, says) = (format!("{file}.safetensors"), [says, &[file]].concat());
+        for (command, rest) in [("inspect", ""), ("predict", "poses.safetensors -o out"), ("export", "-o out")] {
+            folder.refuses(&format!("{command} {name} {rest}"), &says);
+        }
     }
 }
 
@@ -212,7 +212,7 @@ fn datasets_that_are_none_are_refused() {
 #[test]
 fn arguments_that_are_none_are_refused() {
     let folder = Folder::new();
-    for arguments in ["", "dance", "predict", "inspect one two"] {
+    for arguments in ["", "dance", "predict", "export one", "inspect one two"] {
         let output = folder.run(arguments);
         assert_eq!(output.status.code(), Some(2), "ctsn {arguments}");
         assert!(String::from_utf8_lossy(&output.stderr).contains("Usage"), "ctsn {arguments}");

@@ -1,7 +1,7 @@
 //! The mesh stream: graph layers, MLP of each vertex, its basis. network.md §3.
 
 use super::graph::{Graph, Value, integer};
-use super::order::{Order, Ring};
+use super::order::{Batch, Order};
 use ctsn_core::model::{HostModel, Layer, Linear};
 
 /// LayerNorm's eps.
@@ -11,10 +11,10 @@ const EPSILON: f32 = ctsn_core::cpu::network::gate::EPSILON;
 pub fn mesh(graph: &mut Graph, model: &HostModel, order: &Order, reference: &Value) -> Value {
     let (n, k) = (model.sizes.vertices, model.sizes.basis);
     let (mut h, potentials) = features(graph, model, order, reference);
-    let rings = order.rings(&model.graph);
+    let batches = order.batches(&model.graph);
     for (l, layer) in model.layers.iter().enumerate() {
         graph.stage(&format!("layer.{l}"));
-        h = graph_layer(graph, (&rings, model.sizes.heads), layer, [&h, &potentials]);
+        h = graph_layer(graph, (&batches, model.sizes.heads), layer, [&h, &potentials]);
     }
     graph.stage("mesh");
     for layer in &model.vertex_mlp {
@@ -57,7 +57,7 @@ pub fn linear(graph: &mut Graph, layer: &Linear<Vec<f32>>, x: &Value) -> Value {
 /// to all scores of a vertex, which softmax does not see.
 fn graph_layer(
     graph: &mut Graph,
-    (rings, heads): (&[Ring], usize),
+    (batches, heads): (&[Batch], usize),
     layer: &Layer<Vec<f32>>,
     [h, potentials]: [&Value; 2],
 ) -> Value {
@@ -76,25 +76,30 @@ fn graph_layer(
     let start = graph.node("Gemm", &[potentials, &edge, &value_bias]);
     let value = graph.node("Gemm", &[h, &value_weight, &start]);
     let skip = graph.node("Gemm", &[h, &skip_weight, &skip_bias]);
-    let rings: Vec<Value> =
-        rings.iter().map(|ring| attend(graph, ring, [features, heads], [&query, &key, &value, &u])).collect();
-    let attended = graph.concat(&rings.iter().collect::<Vec<_>>(), 0);
+    let batches: Vec<Value> =
+        batches.iter().map(|batch| attend(graph, batch, [features, heads], [&query, &key, &value, &u])).collect();
+    let attended = graph.concat(&batches.iter().collect::<Vec<_>>(), 0);
     let attended = graph.node("Sub", &[&attended, &u]);
     let gated = gate(graph, &layer.gate, &attended, &skip);
     normalise(graph, layer, &gated)
 }
 
-/// `Σ_j α_ij (v_j + U_j)` of the vertices of a ring [places, F]; U_i where there is no neighbour, of which nothing is
-/// left then. Of nine forms this is the fastest or as fast in onnxruntime, natively and as wasm, for 16 and 64 features
-/// a head: tables padded to the greatest number of neighbours took 1.1 to 1.6 times as long, small matrix products
-/// for each vertex and head 1.6 times for 16 features, lists of edges with ScatterElements 3 times.
-fn attend(graph: &mut Graph, ring: &Ring, [features, heads]: [usize; 2], [query, key, value, u]: [&Value; 4]) -> Value {
-    let (count, degree, d) = (ring.places.len(), ring.degree, features / heads);
+/// `Σ_j α_ij (v_j + U_j)` of the vertices of a batch [places, F]; U_i where there is no neighbour, of which nothing is
+/// left then. In onnxruntime the fastest of nine forms or as fast, natively and as wasm, for 16 and 64 features a head
+/// (measured). Tables padded to the greatest number of neighbours, with a mask, took 1.2 to 2 times as long; small
+/// matrix products for each vertex and head 1.7 times for 16 features; a list of edges with ScatterElements 4 times.
+fn attend(
+    graph: &mut Graph,
+    batch: &Batch,
+    [features, heads]: [usize; 2],
+    [query, key, value, u]: [&Value; 4],
+) -> Value {
+    let (count, degree, d) = (batch.places.len(), batch.degree, features / heads);
     if degree == 0 {
-        return graph.slice(u, 0, ring.places.clone());
+        return graph.slice(u, 0, batch.places.clone());
     }
-    let neighbours = graph.indices(&[count, degree], ring.neighbours.iter().copied());
-    let query = graph.slice(query, 0, ring.places.clone());
+    let neighbours = graph.indices(&[count, degree], batch.neighbours.iter().copied());
+    let query = graph.slice(query, 0, batch.places.clone());
     let query = graph.reshape(&query, &[count, 1, features]);
     let key = graph.gather(key, &neighbours);
     let products = graph.node("Mul", &[&query, &key]);

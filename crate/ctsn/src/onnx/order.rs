@@ -12,8 +12,12 @@ pub struct Order {
     pub places: Vec<usize>,
 }
 
-/// Vertices of as many neighbours.
-pub struct Ring {
+/// Longest batch. What is computed of one stays in the cache: in onnxruntime the whole takes 0.8 of the time that it takes
+/// with batches of any length, for 64 features and for 256; 256 and 1,024 are as good.
+const BATCH: usize = 512;
+
+/// Vertices of as many neighbours, one after the other.
+pub struct Batch {
     /// Their places.
     pub places: Range<usize>,
     /// Neighbours of each.
@@ -32,18 +36,19 @@ impl Order {
         Self { vertices, places }
     }
 
-    /// The vertices by their number of neighbours, in this order.
-    pub fn rings(&self, graph: &Graph<Vec<u32>>) -> Vec<Ring> {
-        let degree = |place: usize| graph.of(self.vertices[place]).len();
-        let starts = (0..self.vertices.len()).filter(|place| *place == 0 || degree(*place) != degree(*place - 1));
-        let mut bounds: Vec<usize> = starts.collect();
-        bounds.push(self.vertices.len());
-        let ring = |bounds: &[usize]| {
-            let around = self.vertices[bounds[0]..bounds[1]].iter().flat_map(|vertex| graph.of(*vertex));
-            let neighbours = around.map(|neighbour| self.places[*neighbour as usize]).collect();
-            Ring { places: bounds[0]..bounds[1], degree: degree(bounds[0]), neighbours }
+    /// All vertices, in this order.
+    pub fn batches(&self, graph: &Graph<Vec<u32>>) -> Vec<Batch> {
+        let alike = self.vertices.chunk_by(|a, b| graph.of(*a).len() == graph.of(*b).len());
+        let batch = |vertices: &[usize]| {
+            let start = self.places[vertices[0]];
+            let neighbours = vertices.iter().flat_map(|vertex| graph.of(*vertex));
+            Batch {
+                places: start..start + vertices.len(),
+                degree: graph.of(vertices[0]).len(),
+                neighbours: neighbours.map(|neighbour| self.places[*neighbour as usize]).collect(),
+            }
         };
-        bounds.windows(2).map(ring).collect()
+        alike.flat_map(|vertices| vertices.chunks(BATCH)).map(batch).collect()
     }
 
     /// Rows [n, width] in this order.
