@@ -29,7 +29,7 @@ impl Pose {
         let hip = graph.slice(&place, 0, rig.root..rig.root + 1);
         let place = graph.node("Sub", &[&place, &hip]);
         let seen = graph.concat(&[&linear, &place], 2);
-        let binds: Vec<f32> = rig.inverse_bind.iter().flat_map(|bind| square(bind)).collect();
+        let binds: Vec<f32> = rig.inverse_bind.iter().flat_map(square).collect();
         let binds = graph.floats(&[count, 4, 4], &binds);
         let mut transforms = graph.node("MatMul", &[&seen, &binds]);
         let into = (rig.frame == Frame::HipYaw).then(|| turn(graph, rig, &transforms));
