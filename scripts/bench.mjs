@@ -1,9 +1,10 @@
 // npm run bench: milliseconds of one prediction at a size that stands for a real garment, natively and in Chromium.
+// npm run bench -- --stages: every operation natively, beside the machine's limits.
 // npm run bench -- --peers: beside other runtimes, into docs/results.md.
 import { chromium } from './browser.mjs';
 import { buildLibrary } from './library.mjs';
 import { inPage, withServer } from './page.mjs';
-import { comparePeers } from './peers.mjs';
+import { comparePeers, PAPER } from './peers.mjs';
 import { at, main, need, say } from './step.mjs';
 
 const RUNS = 7;
@@ -37,11 +38,18 @@ async function measureInPage({ runs, predictions }) {
   return result;
 }
 
+/** Every operation, natively, beside the machine's limits: at the usual size and at the paper's. */
+async function timeStages(ctsn) {
+  await need(ctsn, ['bench', '--stages']);
+  await need(ctsn, ['bench', '--stages', '--runs', '20', ...PAPER]);
+}
+
 await main(async () => {
+  const ctsn = at('target', 'release', 'ctsn');
+  await need('cargo', ['build', '--release', '--package', 'ctsn', '--bin', 'ctsn']);
+  if (process.argv.includes('--stages')) return timeStages(ctsn);
   chromium();
   await buildLibrary();
-  await need('cargo', ['build', '--release', '--package', 'ctsn', '--bin', 'ctsn']);
-  const ctsn = at('target', 'release', 'ctsn');
   if (process.argv.includes('--peers')) return comparePeers(ctsn);
   const model = at('target', 'bench.safetensors');
   await need(ctsn, ['bench', '--write-model', model]);

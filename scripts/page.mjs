@@ -12,7 +12,9 @@ const isolated = {
   'Cross-Origin-Resource-Policy': 'same-origin',
 };
 
-/** Runs `body(origin)` while `folders`, { '/prefix/': folder }, are served there; every other address is an empty page. */
+/**
+ * Runs `body(origin)` while `folders`, { '/prefix/': folder }, are served there; every other address is an empty page.
+ */
 export async function withServer(folders, body) {
   const server = createServer((request, response) => {
     const { pathname } = new URL(request.url, 'http://localhost');

@@ -17,10 +17,13 @@ const PREDICTIONS = 8;
 /** Rounds that count, of twice as many. */
 const ROUNDS = 5;
 
+/** The paper's size. */
+export const PAPER = ['--vertices', '9800', '--layers', '3', '--features', '256', '--basis', '128', '--embedding', '32'];
+
 const folder = at('target', 'peers');
 const sizes = [
   { name: 'n 5,056, L 2, F 64, k 64, m 32', flags: ['--embedding', '32'] },
-  { name: 'n 9,810, L 3, F 256, k 128, m 32', flags: ['--vertices', '9800', '--layers', '3', '--features', '256', '--basis', '128', '--embedding', '32'] },
+  { name: 'n 9,810, L 3, F 256, k 128, m 32', flags: PAPER },
 ];
 
 /** A chain of joints along the cloth, every one turned a little: [P, J, 3, 4]. */
@@ -101,7 +104,7 @@ const page = (engine) => async ({ origin, index, threads }) => {
   return { ...times, positions: Float32Array.from(positions) };
 };
 
-/** In the order in which they take their turns; `ctsn` comes first where it is, as what the others are compared with. */
+/** In the order in which they take their turns; positions are compared with those of the first. */
 const engines = [
   { name: 'ctsn', place: 'native', threads: 1, measure: native },
   { name: 'onnxruntime', place: 'native', threads: 1, measure: onnxruntime },

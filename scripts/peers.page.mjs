@@ -1,6 +1,6 @@
 // What runs in a page for npm run bench -- --peers; it is sent there as text, so it names nothing outside itself.
 
-/** Loads an engine and a model, predicts every pose; milliseconds, bytes of WebAssembly memory and the last positions. */
+/** Loads an engine and a model, predicts every pose: milliseconds, bytes of WebAssembly memory, the last positions. */
 export async function measure({ engine, index, threads, warm, joints }) {
   const memories = new Set();
   const { Memory, instantiate, instantiateStreaming } = WebAssembly;

@@ -29,7 +29,10 @@ function settle(status, passed, failed) {
   return { passed, failed: failed || (status === 0 && passed > 0 ? 0 : 1) };
 }
 
-/** As the first suite built it: by itself, with fewer features of its dependencies, all of them would be compiled once more. */
+/**
+ * As the first suite built it: by itself, with fewer features of its dependencies, all of them would be compiled once
+ * more.
+ */
 const buildCommand = () => need('cargo', ['test', '--release', '--no-run']);
 
 const suites = {

@@ -12,8 +12,8 @@ pub struct Order {
     pub places: Vec<usize>,
 }
 
-/// Longest batch. What is computed of one stays in the cache: in onnxruntime the whole takes 0.8 of the time that it takes
-/// with batches of any length, for 64 features and for 256; 256 and 1,024 are as good.
+/// Longest batch. What is computed of one stays in the cache: in onnxruntime the whole takes 0.8 of the time that it
+/// takes with batches of any length, for 64 features and for 256; 256 and 1,024 are about as good.
 const BATCH: usize = 512;
 
 /// Vertices of as many neighbours, one after the other.
