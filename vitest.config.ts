@@ -17,6 +17,8 @@ export default defineConfig({
         resolve: { alias: [{ find: /^three$/, replacement: at('node_modules/three-oldest/build/three.module.js') }] },
         test: { name: 'oldest three', include: ['web/tests/three*.test.ts'], env: { CTSN_THREE: 'oldest' } },
       },
+      // The exported network, in another runtime on Node.
+      { extends: true, test: { name: 'onnx', include: ['tests/onnx/*.test.ts'] } },
       // The demo site in headless Chromium, and the module as it is shipped.
       { extends: true, test: { name: 'browser', include: ['tests/browser/*.test.ts'] } },
     ],

@@ -1,6 +1,10 @@
 // npm run bench: milliseconds of one prediction at a size that stands for a real garment, natively and in Chromium.
-import { chromium, environment, flags } from './browser.mjs';
+// npm run bench -- --stages: every operation natively, beside the machine's limits.
+// npm run bench -- --peers: beside other runtimes, into docs/results.md.
+import { chromium } from './browser.mjs';
 import { buildLibrary } from './library.mjs';
+import { inPage, withServer } from './page.mjs';
+import { comparePeers, PAPER } from './peers.mjs';
 import { at, main, need, say } from './step.mjs';
 
 const RUNS = 7;
@@ -9,7 +13,7 @@ const PREDICTIONS = 30;
 /** In the page: median milliseconds of whole `predictCloth` calls, per run; every call has another pose. */
 async function measureInPage({ runs, predictions }) {
   const { loadModel } = await import('/dist/index.js');
-  const model = await loadModel('/model.safetensors');
+  const model = await loadModel('/models/bench.safetensors');
   const poses = Array.from({ length: 8 }, (_, p) => {
     const pose = new Float32Array(16 * model.joints.length);
     for (let joint = 0; joint < model.joints.length; joint++) {
@@ -34,45 +38,26 @@ async function measureInPage({ runs, predictions }) {
   return result;
 }
 
-/**
- * Serves the npm package and the model to a page of Chromium that is isolated, so that its clock ticks in microseconds.
- */
-async function inChromium(modelFile) {
-  const [{ chromium: playwright }, { createServer }] = await Promise.all([import('playwright-core'), import('vite')]);
-  const server = await createServer({
-    root: at('web'),
-    configFile: false,
-    appType: 'custom',
-    logLevel: 'silent',
-    server: { port: 0, headers: { 'Cross-Origin-Opener-Policy': 'same-origin', 'Cross-Origin-Embedder-Policy': 'require-corp' } },
-    optimizeDeps: { noDiscovery: true },
-  });
-  await server.listen();
-  const browser = await playwright.launch({ executablePath: chromium(), args: flags(), env: environment() });
-  try {
-    const page = await browser.newPage();
-    const isolated = { 'Cross-Origin-Opener-Policy': 'same-origin', 'Cross-Origin-Embedder-Policy': 'require-corp' };
-    await page.route('**/bench.html', (route) => route.fulfill({ contentType: 'text/html', headers: isolated, body: '<!doctype html><title>bench</title>' }));
-    await page.route('**/model.safetensors', (route) => route.fulfill({ path: modelFile, headers: isolated }));
-    await page.goto(new URL('bench.html', server.resolvedUrls.local[0]).href);
-    return await page.evaluate(measureInPage, { runs: RUNS, predictions: PREDICTIONS });
-  } finally {
-    await browser.close();
-    await server.close();
-  }
+/** Every operation, natively, beside the machine's limits: at the usual size and at the paper's. */
+async function timeStages(ctsn) {
+  await need(ctsn, ['bench', '--stages']);
+  await need(ctsn, ['bench', '--stages', '--runs', '20', ...PAPER]);
 }
 
 await main(async () => {
+  const ctsn = at('target', 'release', 'ctsn');
+  await need('cargo', ['build', '--release', '--package', 'ctsn', '--bin', 'ctsn']);
+  if (process.argv.includes('--stages')) return timeStages(ctsn);
   chromium();
   await buildLibrary();
-  await need('cargo', ['build', '--release', '--package', 'ctsn', '--bin', 'ctsn']);
+  if (process.argv.includes('--peers')) return comparePeers(ctsn);
   const model = at('target', 'bench.safetensors');
-  const ctsn = at('target', 'release', 'ctsn');
   await need(ctsn, ['bench', '--write-model', model]);
   say('native, one thread');
   await need(ctsn, ['bench']);
   say('Chromium, one thread, simd128');
-  const { medians, vertices, joints } = await inChromium(model);
+  const { medians, vertices, joints } = await withServer({ '/dist/': at('web', 'dist'), '/models/': at('target') }, (origin) =>
+    inPage(origin, measureInPage, { runs: RUNS, predictions: PREDICTIONS }));
   const sorted = [...medians].sort((a, b) => a - b);
   const shown = (milliseconds) => `${milliseconds.toFixed(2)} ms`;
   console.log(`predictCloth, n = ${vertices}, J = ${joints}: median ${shown(sorted[RUNS >> 1])} ` +

@@ -29,6 +29,12 @@ function settle(status, passed, failed) {
   return { passed, failed: failed || (status === 0 && passed > 0 ? 0 : 1) };
 }
 
+/**
+ * As the first suite built it: by itself, with fewer features of its dependencies, all of them would be compiled once
+ * more.
+ */
+const buildCommand = () => need('cargo', ['test', '--release', '--no-run']);
+
 const suites = {
   // The physical tests print what they measured beside what is expected.
   'native: the workspace': () => cargo(['--no-fail-fast', '--', '--show-output']),
@@ -45,10 +51,12 @@ const suites = {
     await buildLibrary();
     return vitest('package', 'oldest three');
   },
+  'Node: the exported network in onnxruntime': async () => {
+    await buildCommand();
+    return vitest('onnx');
+  },
   'browser: the package on WebGPU, the demo site': async () => {
-    // As the first suite built it: by itself, with fewer features of its dependencies, all of them would be compiled
-    // once more.
-    await need('cargo', ['test', '--release', '--no-run']);
+    await buildCommand();
     await need('vite', ['build', at('www'), '--logLevel', 'warn']);
     return vitest('browser');
   },

@@ -7,7 +7,8 @@ import { fileURLToPath } from 'node:url';
 import { readTensors, toRows, writeTensors } from './safetensors.js';
 
 const extension = process.platform === 'win32' ? '.exe' : '';
-const binary = fileURLToPath(new URL(`../../target/release/ctsn${extension}`, import.meta.url));
+/** The command `ctsn`, as the native tests built it. */
+export const binary = fileURLToPath(new URL(`../../target/release/ctsn${extension}`, import.meta.url));
 
 /** Poses, each [16·J] in three.js order -> positions and normals per pose, each [3·n]. */
 export function predictNatively(model: string, poses: number[][]): Record<'positions' | 'normals', Float32Array[]> {

@@ -36,6 +36,15 @@ export function addTensors(bytes: Uint8Array, tensors: Record<string, Tensor>): 
   return container(header, [file.subarray(8 + length)], tensors);
 }
 
+/** A file's bytes, without the tensors of this prefix; their numbers stay where they are, unnamed. */
+export function withoutTensors(bytes: Uint8Array, prefix: string): Buffer {
+  const file = Buffer.from(bytes);
+  const length = Number(file.readBigUInt64LE());
+  const header = JSON.parse(file.toString('utf8', 8, 8 + length)) as Record<string, unknown>;
+  const kept = Object.entries(header).filter(([name]) => !name.startsWith(prefix));
+  return container(Object.fromEntries(kept), [file.subarray(8 + length)], {});
+}
+
 /** The bytes of a file that holds these tensors. */
 export function writeTensors(tensors: Record<string, Tensor>): Buffer {
   return container({}, [], tensors);

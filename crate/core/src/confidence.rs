@@ -10,28 +10,30 @@ use glam::{Vec3, Vec4};
 /// size. Between the two, the cloth goes over from folds to plain skinning without a jump. Measured on a T-shirt: in
 /// unseen clips the excess stays below 0.05; when single joints are turned further and further, the network's cloth is
 /// stretched more than plainly skinned cloth from 0.3 to 0.4 on.
-const TRUST: f32 = 0.1;
-const DOUBT: f32 = 0.5;
+pub const TRUST: f32 = 0.1;
+/// See [`TRUST`].
+pub const DOUBT: f32 = 0.5;
 
 /// What the confidence in a pose is computed from.
 #[derive(Clone, Debug)]
 pub struct Confidence {
     range: Range,
     /// Joints that carry what the cloth may touch.
-    levers: Vec<Lever>,
+    pub levers: Vec<Lever>,
     /// Root mean square distance of the cloth from its centre, metres, positive.
-    size: f32,
+    pub size: f32,
     frame: BodyFrame,
 }
 
 /// What a joint carries.
 #[derive(Clone, Copy, Debug, Default)]
-struct Lever {
-    joint: usize,
+pub struct Lever {
+    /// Which joint.
+    pub joint: usize,
     /// Share of all that is carried.
-    share: f32,
+    pub share: f32,
     /// Its centre in canonical space, metres.
-    centre: Vec3,
+    pub centre: Vec3,
 }
 
 impl Confidence {

@@ -8,7 +8,7 @@
 #[macro_use]
 pub mod operation;
 
-mod confidence;
+pub mod confidence;
 pub mod cpu;
 pub mod device;
 mod error;

@@ -3,12 +3,13 @@
 #![forbid(unsafe_code)]
 
 mod commands;
+mod onnx;
 mod pages;
 mod pictures;
 
 use clap::{Parser, Subcommand};
 use commands::{
-    bake, bench, character, evaluate, garment, inspect, motion, predict, render, sheet, simulate, study, train,
+    bake, bench, character, evaluate, export, garment, inspect, motion, predict, render, sheet, simulate, study, train,
 };
 
 /// Learned cloth for any skinned character.
@@ -28,6 +29,7 @@ use commands::{
 ///   ctsn evaluate model.safetensors data              errors on the rest
 ///   ctsn study data -o study                          plain skinning, older methods, ablations and sizes beside it
 ///   ctsn render model.safetensors character.glb --clip NAME --frame N -o picture.png
+///   ctsn export model.safetensors -o model.onnx       the network for Unity, Unreal and other runtimes
 #[derive(Parser)]
 #[command(name = "ctsn", version, verbatim_doc_comment)]
 struct Cli {
@@ -49,6 +51,7 @@ enum Command {
     Sheet(sheet::Arguments),
     Inspect(inspect::Arguments),
     Predict(predict::Arguments),
+    Export(export::Arguments),
     Bench(bench::Arguments),
 }
 
@@ -79,6 +82,7 @@ fn main() -> std::process::ExitCode {
         Command::Sheet(arguments) => sheet::run(&arguments),
         Command::Inspect(arguments) => inspect::run(&arguments),
         Command::Predict(arguments) => predict::run(&arguments),
+        Command::Export(arguments) => export::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),
         Command::Train(arguments) => train::run(&arguments),
         Command::Evaluate(arguments) => evaluate::run(&arguments),

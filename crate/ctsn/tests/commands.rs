@@ -40,9 +40,8 @@ fn inspect_and_predict_agree_with_the_golden_file() {
         let out = Tensors::parse(&out).expect("tensors");
         let found = out.f32("positions", &shape).expect("positions").0;
         out.f32("normals", &shape).expect("normals");
-        for (element, (found, wanted)) in found.iter().zip(&wanted).enumerate() {
-            assert!((found - wanted).abs() <= tolerance, "{device}, element {element}: wanted {wanted}, found {found}");
-        }
+        let close = |(found, wanted): (&f32, &f32)| (found - wanted).abs() <= tolerance;
+        assert!(found.iter().zip(&wanted).all(close), "{device}: wanted {wanted:?}, found {found:?}");
     }
 }
 
@@ -63,10 +62,11 @@ fn models_that_are_none_are_refused() {
         ("poses", &["not a ctsn model", "__metadata__ has no key ctsn"]),
         ("none", &["No such file"]),
     ] {
-        let name = format!("{file}.safetensors");
-        let says = [says, &[&name]].concat();
-        folder.refuses(&format!("inspect {file}.safetensors"), &says);
-        folder.refuses(&format!("predict {file}.safetensors poses.safetensors -o out.safetensors"), &says);
+        let (name, says) = (format!("{file}.safetensors"), [says, &[file]].concat());
+        folder.refuses(&format!("inspect {name}"), &says);
+        for (command, poses) in [("predict", "poses.safetensors"), ("export", "")] {
+            folder.refuses(&format!("{command} {name} {poses} -o out.safetensors"), &says);
+        }
     }
 }
 
@@ -212,7 +212,7 @@ fn datasets_that_are_none_are_refused() {
 #[test]
 fn arguments_that_are_none_are_refused() {
     let folder = Folder::new();
-    for arguments in ["", "dance", "predict", "inspect one two"] {
+    for arguments in ["", "dance", "predict", "export one", "inspect one two"] {
         let output = folder.run(arguments);
         assert_eq!(output.status.code(), Some(2), "ctsn {arguments}");
         assert!(String::from_utf8_lossy(&output.stderr).contains("Usage"), "ctsn {arguments}");

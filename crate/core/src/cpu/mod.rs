@@ -1,6 +1,7 @@
 //! The CPU device: one file per operation, kernels generic over the SIMD level, dispatched once per call.
 //! The same source serves AVX2, NEON, wasm simd128 and the scalar level, which is the reference.
 
+pub mod limits;
 pub mod vector;
 
 /// The paper's network.

@@ -1,6 +1,7 @@
 //! `ctsn bench`: milliseconds per prediction and per training step on this machine.
 
 mod gpu;
+mod stages;
 
 use super::Device;
 use anyhow::{Result, ensure};
@@ -43,6 +44,9 @@ pub struct Arguments {
     /// Only write the model to this file, for a benchmark elsewhere
     #[arg(long)]
     write_model: Option<PathBuf>,
+    /// Time every operation by itself, beside what its flops and bytes take at the processor's limits
+    #[arg(long, conflicts_with_all = ["device", "train"])]
+    stages: bool,
     /// Time training steps as well
     #[arg(long)]
     train: bool,
@@ -65,6 +69,9 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     println!("n = {vertices}, J = {joints}, m = {embedding}, k = {basis}, L = {layers}, F = {features}");
     let poses: Vec<&[f32]> = samples.iter().map(|sample| sample.joints.as_slice()).collect();
     let runs = arguments.runs.max(1);
+    if arguments.stages {
+        return stages::run(&model, &poses, runs);
+    }
     match arguments.device {
         Device::Cpu => cpu(&model, &poses, runs)?,
         Device::Gpu => gpu::run(&model, &poses, runs)?,

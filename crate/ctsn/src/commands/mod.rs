@@ -4,6 +4,7 @@ pub mod bake;
 pub mod bench;
 pub mod character;
 pub mod evaluate;
+pub mod export;
 pub mod garment;
 pub mod inspect;
 pub mod motion;

@@ -1,0 +1,50 @@
+// A page of Chromium that is isolated, so that its clock ticks in microseconds and it may have threads.
+import { createServer } from 'node:http';
+import { createReadStream, existsSync } from 'node:fs';
+import { once } from 'node:events';
+import path from 'node:path';
+import { chromium, environment, flags } from './browser.mjs';
+
+const types = { '.js': 'text/javascript', '.mjs': 'text/javascript', '.wasm': 'application/wasm', '.html': 'text/html' };
+const isolated = {
+  'Cross-Origin-Opener-Policy': 'same-origin',
+  'Cross-Origin-Embedder-Policy': 'require-corp',
+  'Cross-Origin-Resource-Policy': 'same-origin',
+};
+
+/**
+ * Runs `body(origin)` while `folders`, { '/prefix/': folder }, are served there; every other address is an empty page.
+ */
+export async function withServer(folders, body) {
+  const server = createServer((request, response) => {
+    const { pathname } = new URL(request.url, 'http://localhost');
+    const prefix = Object.keys(folders).find((prefix) => pathname.startsWith(prefix));
+    const file = prefix && path.join(folders[prefix], pathname.slice(prefix.length));
+    const found = file && existsSync(file);
+    const type = found ? types[path.extname(file)] ?? 'application/octet-stream' : 'text/html';
+    response.writeHead(prefix && !found ? 404 : 200, { ...isolated, 'Content-Type': type });
+    if (found) createReadStream(file).pipe(response);
+    else response.end('<!doctype html><title>bench</title>');
+  });
+  server.listen(0, 'localhost');
+  await once(server, 'listening');
+  try {
+    return await body(`http://localhost:${server.address().port}`);
+  } finally {
+    server.closeAllConnections();
+    server.close();
+  }
+}
+
+/** What `measure(argument)` answers in a page of a browser that was just started. */
+export async function inPage(origin, measure, argument) {
+  const { chromium: playwright } = await import('playwright-core');
+  const browser = await playwright.launch({ executablePath: chromium(), args: flags(), env: environment() });
+  try {
+    const page = await browser.newPage();
+    await page.goto(`${origin}/`);
+    return await page.evaluate(measure, argument);
+  } finally {
+    await browser.close();
+  }
+}
