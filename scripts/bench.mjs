@@ -1,7 +1,9 @@
 // npm run bench: milliseconds of one prediction at a size that stands for a real garment, natively and in Chromium.
 // npm run bench -- --stages: every operation natively, beside the machine's limits.
+// npm run bench -- --dial: what a mesh stream in every k-th frame costs in accuracy.
 // npm run bench -- --peers: beside other runtimes, into docs/results.md.
 import { chromium } from './browser.mjs';
+import { measureDial } from './dial.mjs';
 import { buildLibrary } from './library.mjs';
 import { inPage, withServer } from './page.mjs';
 import { comparePeers, PAPER } from './peers.mjs';
@@ -10,7 +12,7 @@ import { at, main, need, say } from './step.mjs';
 const RUNS = 7;
 const PREDICTIONS = 30;
 
-/** In the page: median milliseconds of whole `predictCloth` calls, per run; every call has another pose. */
+/** In the page: median milliseconds of whole `predictCloth` calls, by quality and run; every call has another pose. */
 async function measureInPage({ runs, predictions }) {
   const { loadModel } = await import('/dist/index.js');
   const model = await loadModel('/models/bench.safetensors');
@@ -24,16 +26,20 @@ async function measureInPage({ runs, predictions }) {
     return pose;
   });
   const median = (values) => values.sort((a, b) => a - b)[values.length >> 1];
-  const once = (i) => {
-    const start = performance.now();
-    model.predictCloth(poses[i % poses.length]);
-    return performance.now() - start;
-  };
-  const result = {};
-  for (let i = 0; i < predictions; i++) once(i);
-  result.medians = Array.from({ length: runs }, () => median(Array.from({ length: predictions }, (_, i) => once(i))));
-  result.joints = model.joints.length;
-  result.vertices = model.vertexCount;
+  const result = { joints: model.joints.length, vertices: model.vertexCount, medians: {} };
+  for (const quality of ['full', 'coarse', 'skinned']) {
+    const options = { quality };
+    // The page's clock may tick in tenths of a millisecond: several at once.
+    const calls = quality === 'full' ? 1 : 10;
+    const once = (i) => {
+      const start = performance.now();
+      for (let call = 0; call < calls; call++) model.predictCloth(poses[(i + call) % poses.length], options);
+      return (performance.now() - start) / calls;
+    };
+    for (let i = 0; i < predictions; i++) once(i);
+    const run = () => median(Array.from({ length: predictions }, (_, i) => once(i)));
+    result.medians[quality] = Array.from({ length: runs }, run);
+  }
   model.dispose();
   return result;
 }
@@ -50,6 +56,7 @@ await main(async () => {
   if (process.argv.includes('--stages')) return timeStages(ctsn);
   chromium();
   await buildLibrary();
+  if (process.argv.includes('--dial')) return measureDial();
   if (process.argv.includes('--peers')) return comparePeers(ctsn);
   const model = at('target', 'bench.safetensors');
   await need(ctsn, ['bench', '--write-model', model]);
@@ -58,8 +65,10 @@ await main(async () => {
   say('Chromium, one thread, simd128');
   const { medians, vertices, joints } = await withServer({ '/dist/': at('web', 'dist'), '/models/': at('target') }, (origin) =>
     inPage(origin, measureInPage, { runs: RUNS, predictions: PREDICTIONS }));
-  const sorted = [...medians].sort((a, b) => a - b);
   const shown = (milliseconds) => `${milliseconds.toFixed(2)} ms`;
-  console.log(`predictCloth, n = ${vertices}, J = ${joints}: median ${shown(sorted[RUNS >> 1])} ` +
-    `(${RUNS} runs of ${PREDICTIONS}; medians from ${shown(sorted[0])} to ${shown(sorted.at(-1))})`);
+  for (const [quality, all] of Object.entries(medians)) {
+    const sorted = [...all].sort((a, b) => a - b);
+    console.log(`predictCloth, ${quality}, n = ${vertices}, J = ${joints}: median ${shown(sorted[RUNS >> 1])} ` +
+      `(${RUNS} runs of ${PREDICTIONS}; medians from ${shown(sorted[0])} to ${shown(sorted.at(-1))})`);
+  }
 });
