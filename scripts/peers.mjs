@@ -167,5 +167,6 @@ export async function comparePeers(ctsn) {
     }
     return tables;
   });
-  await write(tables, { rounds: ROUNDS, predictions: PREDICTIONS });
+  const version = await need(python, ['-c', 'print(__import__("onnxruntime").__version__)'], { capture: true });
+  await write(tables, { rounds: ROUNDS, predictions: PREDICTIONS, version: version.trim() });
 }

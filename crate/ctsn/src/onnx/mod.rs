@@ -1,8 +1,8 @@
 //! The network as an ONNX file. network.md §1–4, all of it and nothing of the repair: what `network::forward` computes
 //! for both streams, from the same joints to the same positions.
 //!
-//! It is not written as a `Device`, one operation after the other: what makes it fast in onnxruntime, such as edge terms
-//! from which products start, spans operations. Tests in `tests/onnx/` hold the two together.
+//! It is not written as a `Device`, one operation after the other: what makes it fast in onnxruntime, such as edge
+//! terms from which products start, spans operations. Tests in `tests/onnx/` hold the two together.
 //!
 //! Inside, points are kept by axes [3, n], so that rows are long, and vertices stand in an order of their own
 //! (`order.rs`), which is undone at the end.
