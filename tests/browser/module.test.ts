@@ -1,4 +1,5 @@
-// The modules as they are shipped: the processor's holds the SIMD it claims, and a page downloads no more than the budget says.
+// The modules as they are shipped: the processor's holds the SIMD it claims, and a page downloads no more than the
+// budget says.
 import { execFileSync } from 'node:child_process';
 import { expect, test } from 'vitest';
 import { budget, measure } from '../../scripts/size.mjs';

@@ -152,7 +152,8 @@ export class Switch {
     // `time` makes all its calls before it first waits, so that each measurement is aside as a whole.
     const predict = () => this.#cpu.predict(Streams.Both, 1, 1);
     const onCpu = (calls: number) => this.#aside(() => time(calls, predict, () => Promise.resolve()));
-    const onGpu = (calls: number) => this.#aside((pose) => time(calls, () => buffers.predict(pose, whole), () => buffers.read()));
+    const onGpu = (calls: number) =>
+      this.#aside((pose) => time(calls, () => buffers.predict(pose, whole), () => buffers.read()));
     await onCpu(1);
     const cpu = await onCpu(4);
     // In a single prediction the way back weighs most. Where that does not explain the difference, measuring ends

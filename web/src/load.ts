@@ -69,7 +69,7 @@ export type ModelSource = string | URL | ArrayBuffer | Uint8Array;
 
 /** The file's bytes, ours: a model that changes to a GPU later reads them once more. */
 async function read(source: ModelSource, options: DownloadOptions): Promise<Uint8Array> {
-  if (source instanceof Uint8Array) return source.slice();
+  if (source instanceof Uint8Array) return new Uint8Array(source);
   if (source instanceof ArrayBuffer) return new Uint8Array(source.slice());
   if (typeof source === 'string' || source instanceof URL) return download(source, options);
   throw new CtsnError('argument', `a model is an address, an ArrayBuffer or a Uint8Array, not ${typeof source}`);

@@ -5,8 +5,8 @@ import { CtsnError } from './error.js';
 export type WasmSource = string | URL | ArrayBuffer | Uint8Array<ArrayBuffer> | WebAssembly.Module;
 
 /**
- * What compiles and starts a module, once per page, from the first call's source, or from `beside`, where it lies beside
- * the package's files. A start that failed may be tried again.
+ * What compiles and starts a module, once per page, from the first call's source, or else from `beside` the package's
+ * files. A start that failed may be tried again.
  */
 export function starter<Exports>(
   initialiseGlue: (options: { module_or_path: BufferSource | WebAssembly.Module }) => Promise<Exports>,

@@ -1,6 +1,6 @@
 /**
- * The boundary to the processor's WebAssembly module: the only file that imports its glue, which wasm-bindgen generates.
- * The other side of it is crate/wasm/src/lib.rs. WebGPU's module has raw-gpu.ts.
+ * The boundary to the processor's WebAssembly module: the only file that imports its glue, which wasm-bindgen
+ * generates. The other side of it is crate/wasm/src/lib.rs. WebGPU's module has raw-gpu.ts.
  */
 import initialiseGlue, { Predictor, Streams, type Folds } from './glue/ctsn.js';
 import { fromCore, starter } from './module.js';

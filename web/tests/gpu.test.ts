@@ -50,7 +50,7 @@ test("WebGPU's module is started for a device, and never without one", async () 
 });
 
 test('a model that goes to a GPU later needs the bytes of its caller no more', async () => {
-  const bytes = bytesOf('tiny');
+  const bytes = Buffer.from(bytesOf('tiny'));
   const model = await loadModel(bytes, { backend: 'cpu' } as GpuLoadOptions);
   bytes.fill(0);
   await model.setBackend('webgpu');
