@@ -34,6 +34,7 @@ pub use fearless_simd::Level;
 /// The CPU: level of SIMD and scratch space that grows to its final size in the first frame.
 pub struct Cpu {
     level: Level,
+    linear: network::linear::Scratch,
     scratch: network::attend::Scratch,
     rings: repair::closest::Rings,
     dipoles: repair::bury::Dipoles,
@@ -52,8 +53,8 @@ impl Cpu {
 
     /// A chosen level.
     pub fn with_level(level: Level) -> Self {
-        let (scratch, rings, dipoles) = Default::default();
-        Self { level, scratch, rings, dipoles }
+        let (linear, scratch, rings, dipoles) = Default::default();
+        Self { level, linear, scratch, rings, dipoles }
     }
 
     /// Runs an operation on slices.
