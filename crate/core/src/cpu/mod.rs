@@ -35,7 +35,8 @@ pub use fearless_simd::Level;
 pub struct Cpu {
     level: Level,
     linear: network::linear::Scratch,
-    scratch: network::attend::Scratch,
+    /// Of attention, for one vertex [C, edges].
+    scores: Vec<f32>,
     rings: repair::closest::Rings,
     dipoles: repair::bury::Dipoles,
 }
@@ -53,8 +54,8 @@ impl Cpu {
 
     /// A chosen level.
     pub fn with_level(level: Level) -> Self {
-        let (linear, scratch, rings, dipoles) = Default::default();
-        Self { level, linear, scratch, rings, dipoles }
+        let (linear, scores, rings, dipoles) = Default::default();
+        Self { level, linear, scores, rings, dipoles }
     }
 
     /// Runs an operation on slices.

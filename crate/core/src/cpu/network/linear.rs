@@ -66,10 +66,10 @@ fn blocks<S: Simd, const ROWS: usize, const TOGETHER: bool>(
     let (inputs, outputs, width) = (weight.len() / bias.len(), bias.len(), VECTORS * S::f32s::LEN);
     let rows = y.len() / outputs;
     if rows < ROWS {
-        return x
-            .chunks_exact(inputs)
-            .zip(y.chunks_exact_mut(outputs))
-            .for_each(|(x, y)| row(simd, x, weight, bias, relu, y));
+        for (x, y) in x.chunks_exact(inputs).zip(y.chunks_exact_mut(outputs)) {
+            row(simd, x, weight, bias, relu, y);
+        }
+        return;
     }
     let panels = room(&mut scratch.panels, outputs.div_ceil(width) * (inputs + 1) * width);
     pack(weight, bias, width, panels);
