@@ -18,25 +18,15 @@ type Operands<'a> = Attend<&'a [f32], &'a mut [f32], &'a [u32]>;
 impl Kernel for Operands<'_> {
     fn run(self, cpu: &mut Cpu) {
         let scores = &mut cpu.scores;
-        dispatch!(cpu.level, simd => {
-            // A length known to the compiler spares the loops over one or two vectors: the whole takes half the time.
-            match self.norm_bias.len() / self.heads {
-                8 => kernel::<_, 8>(simd, self, scores),
-                16 => kernel::<_, 16>(simd, self, scores),
-                32 => kernel::<_, 32>(simd, self, scores),
-                64 => kernel::<_, 64>(simd, self, scores),
-                _ => kernel::<_, 0>(simd, self, scores),
-            }
-        });
+        dispatch!(cpu.level, simd => kernel(simd, self, scores));
     }
 }
 
-/// D: features per head where they are known, else 0.
 #[inline(always)]
-fn kernel<S: Simd, const D: usize>(simd: S, operands: Operands, scores: &mut Vec<f32>) {
+fn kernel<S: Simd>(simd: S, operands: Operands, scores: &mut Vec<f32>) {
     let Attend { offsets, neighbours, heads, projected, potentials, edge, attended, output, .. } = operands;
     let (features, potentials) = (operands.norm_bias.len(), potentials.as_chunks::<6>().0);
-    let (d, graph) = (if D > 0 { D } else { features / heads }, Graph { offsets, neighbours });
+    let (d, graph) = (features / heads, Graph { offsets, neighbours });
     let rows = attended.chunks_exact_mut(features).zip(output.chunks_exact_mut(features));
     let mut folded = 0;
     for (i, (attended, output)) in rows.enumerate() {
@@ -44,41 +34,55 @@ fn kernel<S: Simd, const D: usize>(simd: S, operands: Operands, scores: &mut Vec
         if let Some(last) = graph.of(i).last() {
             // No earlier than needed: neighbours are near by, so the rows are read from the cache again.
             for j in folded..=*last as usize {
-                let keys_values = &mut projected[(4 * j + 1) * features..][..2 * features];
-                for half in keys_values.chunks_exact_mut(features) {
-                    add_edge(simd, 1.0, edge, &potentials[j], half);
-                }
+                let (key, value) = projected[(4 * j + 1) * features..][..2 * features].split_at_mut(features);
+                add_edge(simd, 1.0, edge, &potentials[j], [key, value]);
             }
             folded = folded.max(*last as usize + 1);
-            attend(simd, (i, graph.of(i)), d, projected, scores, attended);
-            add_edge(simd, -1.0, edge, &potentials[i], attended);
+            // A length known to the compiler spares the loops over one or two vectors: the whole takes half the time.
+            let of = (i, graph.of(i));
+            match d {
+                8 => attend::<S, 8>(simd, of, d, projected, scores, attended),
+                16 => attend::<S, 16>(simd, of, d, projected, scores, attended),
+                32 => attend::<S, 32>(simd, of, d, projected, scores, attended),
+                64 => attend::<S, 64>(simd, of, d, projected, scores, attended),
+                _ => attend::<S, 0>(simd, of, d, projected, scores, attended),
+            }
+            add_edge(simd, -1.0, edge, &potentials[i], [attended]);
         }
         let skip = &projected[(i * 4 + 3) * features..][..features];
         gate(simd, attended, skip, operands.gate, operands.norm_weight, operands.norm_bias, output);
     }
 }
 
-/// y += sign · `W_e` potential, of one vertex.
-#[inline(always)]
-fn add_edge<S: Simd>(simd: S, sign: f32, edge: &[f32], potential: &[f32; 6], y: &mut [f32]) {
-    let (lanes, features) = (S::f32s::LEN, y.len());
-    let scales = potential.map(|potential| S::f32s::splat(simd, sign * potential));
+/// y += sign · `W_e` potential, of one vertex, for each y [F].
+#[cfg_attr(target_arch = "wasm32", inline(never))]
+#[cfg_attr(not(target_arch = "wasm32"), inline(always))]
+fn add_edge<S: Simd, const N: usize>(simd: S, sign: f32, edge: &[f32], potential: &[f32; 6], y: [&mut [f32]; N]) {
+    let (lanes, features) = (S::f32s::LEN, edge.len() / 6);
     let whole = features / lanes * lanes;
     for at in (0..whole).step_by(lanes) {
-        let mut sum = S::f32s::from_slice(simd, &y[at..at + lanes]);
+        let mut sum = S::f32s::splat(simd, 0.0);
         for p in 0..6 {
-            sum = scales[p].mul_add(S::f32s::from_slice(simd, &edge[p * features + at..][..lanes]), sum);
+            let scale = S::f32s::splat(simd, sign * potential[p]);
+            sum = scale.mul_add(S::f32s::from_slice(simd, &edge[p * features + at..][..lanes]), sum);
         }
-        sum.store_slice(&mut y[at..at + lanes]);
+        for n in 0..N {
+            (S::f32s::from_slice(simd, &y[n][at..at + lanes]) + sum).store_slice(&mut y[n][at..at + lanes]);
+        }
     }
     for at in whole..features {
-        y[at] += sign * (0..6).map(|p| potential[p] * edge[p * features + at]).sum::<f32>();
+        let sum = (0..6).map(|p| potential[p] * edge[p * features + at]).sum::<f32>();
+        for n in 0..N {
+            y[n][at] += sign * sum;
+        }
     }
 }
 
-/// `Σ_j α_ij v_j` of a vertex that has neighbours, added to zeros; d features per head.
-#[inline(always)]
-fn attend<S: Simd>(
+/// `Σ_j α_ij v_j` of a vertex that has neighbours, added to zeros; d features per head. D: the same where it is known,
+/// else 0.
+#[cfg_attr(target_arch = "wasm32", inline(never))]
+#[cfg_attr(not(target_arch = "wasm32"), inline(always))]
+fn attend<S: Simd, const D: usize>(
     simd: S,
     (i, neighbours): (usize, &[u32]),
     d: usize,
@@ -86,6 +90,7 @@ fn attend<S: Simd>(
     scores: &mut Vec<f32>,
     attended: &mut [f32],
 ) {
+    let d = if D > 0 { D } else { d };
     let (features, edges) = (attended.len(), neighbours.len().next_multiple_of(S::f32s::LEN));
     let part = |j: usize, part: usize| projected[(j * 4 + part) * features..][..features].chunks_exact(d);
     let scores = room(scores, features / d * edges);

@@ -8,7 +8,8 @@ pub const EPSILON: f32 = 1e-5;
 
 /// The end of [`Attend`](crate::operation::Attend), of one vertex: ĥ, r [F], gate [3F], norm weight and bias [F] ->
 /// h [F].
-#[inline(always)]
+#[cfg_attr(target_arch = "wasm32", inline(never))]
+#[cfg_attr(not(target_arch = "wasm32"), inline(always))]
 pub(super) fn gate<S: Simd>(
     simd: S,
     attended: &[f32],

@@ -53,7 +53,8 @@ fn product<S: Simd>(
 }
 
 /// ROWS: height of a tile. TOGETHER: whether its x is copied.
-#[inline(always)]
+#[cfg_attr(target_arch = "wasm32", inline(never))]
+#[cfg_attr(not(target_arch = "wasm32"), inline(always))]
 fn blocks<S: Simd, const ROWS: usize, const TOGETHER: bool>(
     simd: S,
     x: &[f32],
