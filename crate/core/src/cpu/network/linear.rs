@@ -53,6 +53,7 @@ fn product<S: Simd>(
 }
 
 /// ROWS: height of a tile. TOGETHER: whether its x is copied.
+/// A function of its own in wasm: inlined, V8 compiles it half as fast.
 #[cfg_attr(target_arch = "wasm32", inline(never))]
 #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
 fn blocks<S: Simd, const ROWS: usize, const TOGETHER: bool>(
