@@ -35,7 +35,9 @@ pub use fearless_simd::Level;
 /// The CPU: level of SIMD and scratch space that grows to its final size in the first frame.
 pub struct Cpu {
     level: Level,
-    scratch: network::attend::Scratch,
+    linear: network::linear::Scratch,
+    /// Of attention, for one vertex [C, edges].
+    scores: Vec<f32>,
     rings: repair::closest::Rings,
     dipoles: repair::bury::Dipoles,
 }
@@ -53,8 +55,8 @@ impl Cpu {
 
     /// A chosen level.
     pub fn with_level(level: Level) -> Self {
-        let (scratch, rings, dipoles) = Default::default();
-        Self { level, scratch, rings, dipoles }
+        let (linear, scores, rings, dipoles) = Default::default();
+        Self { level, linear, scores, rings, dipoles }
     }
 
     /// Runs an operation on slices.

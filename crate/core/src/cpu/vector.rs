@@ -39,3 +39,11 @@ pub fn axpy<S: Simd>(simd: S, a: f32, x: &[f32], y: &mut [f32]) {
         *y += a * x;
     }
 }
+
+/// The first `length` numbers of what grows to its final size in the first frame; they hold what they held.
+pub fn room(scratch: &mut Vec<f32>, length: usize) -> &mut [f32] {
+    if scratch.len() < length {
+        scratch.resize(length, 0.0);
+    }
+    &mut scratch[..length]
+}

@@ -1,111 +1,136 @@
-//! `ĥ_i = concat_c Σ_j α_ij (v_c + ε_c)`, `α = softmax_j(q_c · (k_c + ε_c) / √d)`. network.md §3.
+//! `ĥ_i = concat_c Σ_j α_ij (v_c + ε_c)`, `α = softmax_j(q_c · (k_c + ε_c) / √d)`; then gate and LayerNorm, while ĥ_i
+//! is at hand. network.md §3.
 //! The edge features are differences, so `ε_ij = U_j - U_i` with `U = W_e potentials`: U_i drops out of the softmax and
 //! is taken off ĥ_i once, since Σ_j α_ij = 1. That is exact, and saves a product per edge.
 
 use super::exp::exp;
 use super::gate::gate;
-use crate::cpu::vector::{axpy, dot};
+use crate::cpu::vector::{axpy, dot, room};
 use crate::cpu::{Cpu, Kernel};
 use crate::operation::Attend;
 use crate::topology::Graph;
-use fearless_simd::{Simd, dispatch};
+use fearless_simd::{Simd, SimdBase, SimdFloat, dispatch};
 
-/// Room for one call.
-#[derive(Default)]
-pub struct Scratch {
-    /// U per vertex [n, F].
-    edges: Vec<f32>,
-    /// Scores of one vertex [C, degree].
-    scores: Vec<f32>,
-}
+type Operands<'a> = Attend<&'a [f32], &'a mut [f32], &'a [u32]>;
 
-/// Leaves projected as q | k + U | v + U | r.
-impl Kernel for Attend<&[f32], &mut [f32], &[u32]> {
+/// Leaves projected as q | k + U | v + U | r, where a vertex has neighbours.
+impl Kernel for Operands<'_> {
     fn run(self, cpu: &mut Cpu) {
-        let Self { offsets, neighbours, heads, projected, potentials, edge, attended, output, .. } = self;
-        let (graph, scratch) = (Graph { offsets, neighbours }, &mut cpu.scratch);
-        scratch.edges.resize(attended.len(), 0.0);
-        dispatch!(cpu.level, simd => {
-            fold(simd, projected, potentials, edge, &mut scratch.edges);
-            // A length known to the compiler spares the loops over one or two vectors: the whole takes half the time.
-            match attended.len() / (offsets.len() - 1).max(1) / heads {
-                8 => kernel::<_, 8>(simd, graph, heads, projected, scratch, attended),
-                16 => kernel::<_, 16>(simd, graph, heads, projected, scratch, attended),
-                32 => kernel::<_, 32>(simd, graph, heads, projected, scratch, attended),
-                _ => kernel::<_, 0>(simd, graph, heads, projected, scratch, attended),
+        let scores = &mut cpu.scores;
+        dispatch!(cpu.level, simd => kernel(simd, self, scores));
+    }
+}
+
+#[inline(always)]
+fn kernel<S: Simd>(simd: S, operands: Operands, scores: &mut Vec<f32>) {
+    let Attend { offsets, neighbours, heads, projected, potentials, edge, attended, output, .. } = operands;
+    let (features, potentials) = (operands.norm_bias.len(), potentials.as_chunks::<6>().0);
+    let (d, graph) = (features / heads, Graph { offsets, neighbours });
+    let rows = attended.chunks_exact_mut(features).zip(output.chunks_exact_mut(features));
+    let mut folded = 0;
+    for (i, (attended, output)) in rows.enumerate() {
+        attended.fill(0.0);
+        if let Some(last) = graph.of(i).last() {
+            // No earlier than needed: neighbours are near by, so the rows are read from the cache again.
+            for j in folded..=*last as usize {
+                let (key, value) = projected[(4 * j + 1) * features..][..2 * features].split_at_mut(features);
+                add_edge(simd, 1.0, edge, &potentials[j], [key, value]);
             }
-        });
-        let (gate_weight, norm_weight, norm_bias) = (self.gate, self.norm_weight, self.norm_bias);
-        dispatch!(cpu.level, simd => gate(simd, attended, projected, gate_weight, norm_weight, norm_bias, output));
-    }
-}
-
-/// Moves the edge term into the nodes: `U = W_e potentials`, added to k and v.
-#[inline(always)]
-fn fold<S: Simd>(simd: S, projected: &mut [f32], potentials: &[f32], edge: &[f32], edges: &mut [f32]) {
-    let features = edge.len() / 6;
-    let rows = projected.chunks_exact_mut(4 * features).zip(potentials.as_chunks::<6>().0);
-    for (u, (projected, potential)) in edges.chunks_exact_mut(features).zip(rows) {
-        u.fill(0.0);
-        for (edge, potential) in edge.chunks_exact(features).zip(potential) {
-            axpy(simd, *potential, edge, u);
+            folded = folded.max(*last as usize + 1);
+            // A length known to the compiler spares the loops over one or two vectors: the whole takes half the time.
+            let of = (i, graph.of(i));
+            match d {
+                8 => attend::<S, 8>(simd, of, d, projected, scores, attended),
+                16 => attend::<S, 16>(simd, of, d, projected, scores, attended),
+                32 => attend::<S, 32>(simd, of, d, projected, scores, attended),
+                64 => attend::<S, 64>(simd, of, d, projected, scores, attended),
+                _ => attend::<S, 0>(simd, of, d, projected, scores, attended),
+            }
+            add_edge(simd, -1.0, edge, &potentials[i], [attended]);
         }
-        let key_value = projected[features..3 * features].chunks_exact_mut(features);
-        key_value.for_each(|half| axpy(simd, 1.0, u, half));
+        let skip = &projected[(i * 4 + 3) * features..][..features];
+        gate(simd, attended, skip, operands.gate, operands.norm_weight, operands.norm_bias, output);
     }
 }
 
-/// D: features per head where they are known, else 0.
-#[inline(always)]
-fn kernel<S: Simd, const D: usize>(
+/// y += sign · `W_e` potential, of one vertex, for each y [F].
+#[cfg_attr(target_arch = "wasm32", inline(never))]
+#[cfg_attr(not(target_arch = "wasm32"), inline(always))]
+fn add_edge<S: Simd, const N: usize>(simd: S, sign: f32, edge: &[f32], potential: &[f32; 6], y: [&mut [f32]; N]) {
+    let (lanes, features) = (S::f32s::LEN, edge.len() / 6);
+    let whole = features / lanes * lanes;
+    for at in (0..whole).step_by(lanes) {
+        let mut sum = S::f32s::splat(simd, 0.0);
+        for p in 0..6 {
+            let scale = S::f32s::splat(simd, sign * potential[p]);
+            sum = scale.mul_add(S::f32s::from_slice(simd, &edge[p * features + at..][..lanes]), sum);
+        }
+        for n in 0..N {
+            (S::f32s::from_slice(simd, &y[n][at..at + lanes]) + sum).store_slice(&mut y[n][at..at + lanes]);
+        }
+    }
+    for at in whole..features {
+        let sum = (0..6).map(|p| potential[p] * edge[p * features + at]).sum::<f32>();
+        for n in 0..N {
+            y[n][at] += sign * sum;
+        }
+    }
+}
+
+/// `Σ_j α_ij v_j` of a vertex that has neighbours, added to zeros; d features per head. D: the same where it is known,
+/// else 0.
+#[cfg_attr(target_arch = "wasm32", inline(never))]
+#[cfg_attr(not(target_arch = "wasm32"), inline(always))]
+fn attend<S: Simd, const D: usize>(
     simd: S,
-    graph: Graph<&[u32]>,
-    heads: usize,
+    (i, neighbours): (usize, &[u32]),
+    d: usize,
     projected: &[f32],
-    scratch: &mut Scratch,
+    scores: &mut Vec<f32>,
     attended: &mut [f32],
 ) {
-    let Scratch { edges, scores } = scratch;
-    let features = attended.len() / (graph.offsets.len() - 1);
-    let d = if D > 0 { D } else { features / heads };
+    let d = if D > 0 { D } else { d };
+    let (features, edges) = (attended.len(), neighbours.len().next_multiple_of(S::f32s::LEN));
+    let part = |j: usize, part: usize| projected[(j * 4 + part) * features..][..features].chunks_exact(d);
+    let scores = room(scores, features / d * edges);
+    scores.fill(f32::MIN);
+    for (e, j) in neighbours.iter().enumerate() {
+        for (c, (query, key)) in part(i, 0).zip(part(*j as usize, 1)).enumerate() {
+            scores[c * edges + e] = dot(simd, query, key);
+        }
+    }
     let scale = 1.0 / (d as f32).sqrt();
-    for (i, output) in attended.chunks_exact_mut(features).enumerate() {
-        let (query, neighbours) = (&projected[i * 4 * features..][..features], graph.of(i));
-        output.fill(0.0);
-        let degree = neighbours.len();
-        if degree == 0 {
-            continue;
+    for scores in scores.chunks_exact_mut(edges) {
+        softmax(simd, scale, scores);
+    }
+    for (e, j) in neighbours.iter().enumerate() {
+        for (c, (value, attended)) in part(*j as usize, 2).zip(attended.chunks_exact_mut(d)).enumerate() {
+            axpy(simd, scores[c * edges + e], value, attended);
         }
-        scores.resize(scores.len().max(heads * degree), 0.0);
-        let scores = &mut scores[..heads * degree];
-        for (e, j) in neighbours.iter().enumerate() {
-            let key = &projected[(*j as usize * 4 + 1) * features..][..features];
-            for (c, (query, key)) in query.chunks_exact(d).zip(key.chunks_exact(d)).enumerate() {
-                scores[c * degree + e] = dot(simd, query, key) * scale;
-            }
-        }
-        softmax(simd, scores, degree);
-        for (e, j) in neighbours.iter().enumerate() {
-            let value = &projected[(*j as usize * 4 + 2) * features..][..features];
-            for (c, (value, output)) in value.chunks_exact(d).zip(output.chunks_exact_mut(d)).enumerate() {
-                axpy(simd, scores[c * degree + e], value, output);
-            }
-        }
-        axpy(simd, -1.0, &edges[i * features..][..features], output);
     }
 }
 
-/// Softmax of each row of `degree` scores.
+/// Softmax of scores, times `scale` first. Whole vectors: those that fill it up are `f32::MIN`, and as good as zero
+/// afterwards.
 #[inline(always)]
-pub fn softmax<S: Simd>(simd: S, scores: &mut [f32], degree: usize) {
-    for row in scores.chunks_exact_mut(degree) {
-        let largest = row.iter().copied().fold(f32::MIN, f32::max);
-        row.iter_mut().for_each(|score| *score -= largest);
+pub fn softmax<S: Simd>(simd: S, scale: f32, scores: &mut [f32]) {
+    let lanes = S::f32s::LEN;
+    let scale = S::f32s::splat(simd, scale);
+    let mut largest = S::f32s::splat(simd, f32::MIN);
+    // No `fold`: the compiler leaves it outside, where SIMD is slow.
+    for scores in scores.chunks_exact(lanes) {
+        largest = largest.max(S::f32s::from_slice(simd, scores));
     }
-    exp(simd, scores);
-    for row in scores.chunks_exact_mut(degree) {
-        let total: f32 = row.iter().sum();
-        row.iter_mut().for_each(|score| *score /= total);
+    let largest = S::f32s::splat(simd, largest.reduce_max());
+    let mut total = S::f32s::splat(simd, 0.0);
+    for scores in scores.chunks_exact_mut(lanes) {
+        let power = exp(simd, (S::f32s::from_slice(simd, scores) - largest) * scale);
+        power.store_slice(scores);
+        total += power;
+    }
+    let share = S::f32s::splat(simd, 1.0 / total.reduce_sum());
+    for scores in scores.chunks_exact_mut(lanes) {
+        (S::f32s::from_slice(simd, scores) * share).store_slice(scores);
     }
 }
 
@@ -125,6 +150,8 @@ impl crate::suite::Suite for Attend<Vec<f32>, Vec<f32>, Vec<u32>> {
             [24, 2, 8],
             [67, 4, 16],
             [99, 2, 32],
+            [67, 2, 64],
+            [67, 2, 64],
             [67, 3, 5],
             [130, 2, 33],
             [99, 70, 1],

@@ -6,13 +6,14 @@ use fearless_simd::{Simd, SimdBase, SimdFloat};
 /// LayerNorm's eps; part of the contract.
 pub const EPSILON: f32 = 1e-5;
 
-/// The end of [`Attend`](crate::operation::Attend): attended ĥ [n, F], projected [n, 4F] with r last, gate [3F], norm
-/// weight and bias [F] -> output h [n, F].
-#[inline(always)]
+/// The end of [`Attend`](crate::operation::Attend), of one vertex: ĥ, r [F], gate [3F], norm weight and bias [F] ->
+/// h [F].
+#[cfg_attr(target_arch = "wasm32", inline(never))]
+#[cfg_attr(not(target_arch = "wasm32"), inline(always))]
 pub(super) fn gate<S: Simd>(
     simd: S,
     attended: &[f32],
-    projected: &[f32],
+    skip: &[f32],
     gate: &[f32],
     norm_weight: &[f32],
     norm_bias: &[f32],
@@ -21,22 +22,17 @@ pub(super) fn gate<S: Simd>(
     let features = norm_weight.len();
     let (gate_attended, rest) = gate.split_at(features);
     let (gate_skip, gate_difference) = rest.split_at(features);
-    let rows = attended.chunks_exact(features).zip(projected.chunks_exact(4 * features));
-    for (output, (attended, projected)) in output.chunks_exact_mut(features).zip(rows) {
-        let skip = &projected[3 * features..];
-        // w3 · (ĥ - r) is split in two products; the difference is never stored.
-        let logit =
-            dot(simd, gate_attended, attended) + dot(simd, gate_skip, skip) + dot(simd, gate_difference, attended)
-                - dot(simd, gate_difference, skip);
-        let beta = 1.0 / (1.0 + (-logit).exp());
-        for ((output, attended), skip) in output.iter_mut().zip(attended).zip(skip) {
-            *output = attended + beta * (skip - attended);
-        }
-        let mean = sum(simd, output) / features as f32;
-        output.iter_mut().for_each(|value| *value -= mean);
-        let variance = dot(simd, output, output) / features as f32;
-        normalise(simd, 1.0 / (variance + EPSILON).sqrt(), norm_weight, norm_bias, output);
+    // w3 · (ĥ - r) is split in two products; the difference is never stored.
+    let logit = dot(simd, gate_attended, attended) + dot(simd, gate_skip, skip) + dot(simd, gate_difference, attended)
+        - dot(simd, gate_difference, skip);
+    let beta = 1.0 / (1.0 + (-logit).exp());
+    for ((output, attended), skip) in output.iter_mut().zip(attended).zip(skip) {
+        *output = attended + beta * (skip - attended);
     }
+    let mean = sum(simd, output) / features as f32;
+    output.iter_mut().for_each(|value| *value -= mean);
+    let variance = dot(simd, output, output) / features as f32;
+    normalise(simd, 1.0 / (variance + EPSILON).sqrt(), norm_weight, norm_bias, output);
 }
 
 /// output = max(0, weight · output · scale + bias).

@@ -1,80 +1,192 @@
 //! `y = act(W x + b)`, rows independent. network.md §2, §3.
-//! Register tile of 4 rows × 2 vectors: 8 accumulators. With 10 or more, Chromium's wasm spills and falls to half
-//! (measured).
+//!
+//! A block of rows stays in the cache while all columns go over it; weights and bias are copied into *panels*, so that
+//! what one pass over the inputs reads lies together. In place, rows of 4 KiB put a column's weights into the same few
+//! lines of the cache. The copy costs 1 / rows of the product, so it is made anew for each call: weights may change
+//! between any two, as training does.
 
+use crate::cpu::vector::{axpy, room};
 use crate::cpu::{Cpu, Kernel};
 use crate::operation::{Activation, Linear};
 use fearless_simd::{Simd, SimdBase, SimdFloat, dispatch};
 
+/// Rows that stay in the cache: a whole number of tiles of any height below.
+const BLOCK: usize = 192;
+/// Vectors of a panel.
+const VECTORS: usize = 2;
+
+/// Room for one call.
+#[derive(Default)]
+pub struct Scratch {
+    /// Bias, then weights, of VECTORS vectors of columns after another [panels, inputs + 1, VECTORS · lanes].
+    panels: Vec<f32>,
+    /// A block of x, tile after tile [tiles, inputs, rows of a tile].
+    tiles: Vec<f32>,
+}
+
 impl Kernel for Linear<&[f32], &mut [f32]> {
     fn run(self, cpu: &mut Cpu) {
         let Self { x, weight, bias, activation, y } = self;
-        dispatch!(cpu.level, simd => kernel(simd, x, weight, bias, activation == Activation::Relu, y));
+        let (relu, scratch) = (activation == Activation::Relu, &mut cpu.linear);
+        dispatch!(cpu.level, simd => product(simd, x, weight, bias, relu, scratch, y));
     }
 }
 
+/// Tiles of 12 accumulators where a product and a sum are one instruction, of 8 elsewhere: measured on AVX-512, AVX2
+/// and in V8. With one row or vector more, the compiler or V8 keeps them in memory, at a third of the speed. In V8 a
+/// tile of x must lie together, too (40 GFLOP/s instead of 32); natively that costs a third where outputs are few.
 #[inline(always)]
-fn kernel<S: Simd>(simd: S, x: &[f32], weight: &[f32], bias: &[f32], relu: bool, y: &mut [f32]) {
-    let (lanes, outputs) = (S::f32s::LEN, bias.len());
-    let inputs = weight.len() / outputs;
-    let tiled = y.len() / outputs / 4 * 4;
-    let (x_tiled, x_rest) = x.split_at(tiled * inputs);
-    let (y_tiled, y_rest) = y.split_at_mut(tiled * outputs);
-    let mut column = 0;
-    while column + 2 * lanes <= outputs {
-        columns::<S, 4, 2>(simd, x_tiled, weight, bias, column, relu, y_tiled);
-        columns::<S, 1, 2>(simd, x_rest, weight, bias, column, relu, y_rest);
-        column += 2 * lanes;
-    }
-    while column + lanes <= outputs {
-        columns::<S, 4, 1>(simd, x_tiled, weight, bias, column, relu, y_tiled);
-        columns::<S, 1, 1>(simd, x_rest, weight, bias, column, relu, y_rest);
-        column += lanes;
-    }
-    for (x, y) in x.chunks_exact(inputs).zip(y.chunks_exact_mut(outputs)) {
-        for c in column..outputs {
-            let sum = x.iter().enumerate().fold(bias[c], |sum, (i, x)| sum + x * weight[i * outputs + c]);
-            y[c] = if relu { sum.max(0.0) } else { sum };
-        }
-    }
-}
-
-/// VECTORS whole vectors of output columns from `column` on, for rows in groups of ROWS.
-#[inline(always)]
-fn columns<S: Simd, const ROWS: usize, const VECTORS: usize>(
+fn product<S: Simd>(
     simd: S,
     x: &[f32],
     weight: &[f32],
     bias: &[f32],
-    column: usize,
     relu: bool,
+    scratch: &mut Scratch,
     y: &mut [f32],
 ) {
-    let (lanes, outputs) = (S::f32s::LEN, bias.len());
-    let inputs = weight.len() / outputs;
-    let zero = S::f32s::splat(simd, 0.0);
-    let start: [S::f32s; VECTORS] =
-        std::array::from_fn(|v| S::f32s::from_slice(simd, &bias[column + v * lanes..][..lanes]));
-    for (x, y) in x.chunks_exact(ROWS * inputs).zip(y.chunks_exact_mut(ROWS * outputs)) {
-        let rows: [&[f32]; ROWS] = std::array::from_fn(|r| &x[r * inputs..][..inputs]);
-        let mut sums = [start; ROWS];
-        for (i, weight) in weight.chunks_exact(outputs).enumerate() {
-            let weight = &weight[column..][..VECTORS * lanes];
-            let w: [S::f32s; VECTORS] =
-                std::array::from_fn(|v| S::f32s::from_slice(simd, &weight[v * lanes..][..lanes]));
-            for r in 0..ROWS {
-                let x = S::f32s::splat(simd, rows[r][i]);
-                for v in 0..VECTORS {
-                    sums[r][v] = x.mul_add(w[v], sums[r][v]);
+    if S::f32s::LEN > 4 {
+        blocks::<S, 6, false>(simd, x, weight, bias, relu, scratch, y);
+    } else {
+        blocks::<S, 4, true>(simd, x, weight, bias, relu, scratch, y);
+    }
+}
+
+/// ROWS: height of a tile. TOGETHER: whether its x is copied.
+/// A function of its own in wasm: inlined, V8 compiles it half as fast.
+#[cfg_attr(target_arch = "wasm32", inline(never))]
+#[cfg_attr(not(target_arch = "wasm32"), inline(always))]
+fn blocks<S: Simd, const ROWS: usize, const TOGETHER: bool>(
+    simd: S,
+    x: &[f32],
+    weight: &[f32],
+    bias: &[f32],
+    relu: bool,
+    scratch: &mut Scratch,
+    y: &mut [f32],
+) {
+    let (inputs, outputs, width) = (weight.len() / bias.len(), bias.len(), VECTORS * S::f32s::LEN);
+    let rows = y.len() / outputs;
+    if rows < ROWS {
+        for (x, y) in x.chunks_exact(inputs).zip(y.chunks_exact_mut(outputs)) {
+            row(simd, x, weight, bias, relu, y);
+        }
+        return;
+    }
+    let panels = room(&mut scratch.panels, outputs.div_ceil(width) * (inputs + 1) * width);
+    pack(weight, bias, width, panels);
+    for start in (0..rows).step_by(BLOCK) {
+        let (tiles, last) = (BLOCK.min(rows - start).div_ceil(ROWS), rows - ROWS);
+        // The last tile of all ends with the last row: some rows are computed twice, alike.
+        let starts = (0..tiles).map(|tile| (start + tile * ROWS).min(last));
+        let copies = room(&mut scratch.tiles, if TOGETHER { tiles * ROWS * inputs } else { 0 });
+        for (copy, at) in copies.chunks_exact_mut(ROWS * inputs).zip(starts.clone()) {
+            let rows = tile_rows::<ROWS>(&x[at * inputs..], inputs);
+            for (i, copy) in copy.as_chunks_mut::<ROWS>().0.iter_mut().enumerate().take(inputs) {
+                *copy = rows.map(|row| row[i]);
+            }
+        }
+        for (p, panel) in panels.chunks_exact((inputs + 1) * width).enumerate() {
+            let columns = p * width..outputs.min((p + 1) * width);
+            for (tile, at) in starts.clone().enumerate() {
+                let sums = if TOGETHER {
+                    let copy = &copies[tile * ROWS * inputs..][..ROWS * inputs];
+                    let copy = copy.as_chunks::<ROWS>().0;
+                    sums::<S, ROWS>(
+                        simd,
+                        #[inline(always)]
+                        |r, i| copy[i][r],
+                        inputs,
+                        panel,
+                    )
+                } else {
+                    let rows = tile_rows::<ROWS>(&x[at * inputs..], inputs);
+                    sums::<S, ROWS>(
+                        simd,
+                        #[inline(always)]
+                        |r, i| rows[r][i],
+                        inputs,
+                        panel,
+                    )
+                };
+                for r in 0..ROWS {
+                    store(simd, &sums[r], relu, &mut y[(at + r) * outputs..][columns.clone()]);
                 }
             }
         }
+    }
+}
+
+/// The first rows of x.
+#[inline(always)]
+fn tile_rows<const ROWS: usize>(x: &[f32], inputs: usize) -> [&[f32]; ROWS] {
+    std::array::from_fn(|r| &x[r * inputs..][..inputs])
+}
+
+/// Bias and weights -> panels; columns beyond the last are zero.
+#[inline(always)]
+fn pack(weight: &[f32], bias: &[f32], width: usize, panels: &mut [f32]) {
+    let (inputs, outputs) = (weight.len() / bias.len(), bias.len());
+    for (p, panel) in panels.chunks_exact_mut((inputs + 1) * width).enumerate() {
+        let columns = p * width..outputs.min((p + 1) * width);
+        let rows = std::iter::once(bias).chain(weight.chunks_exact(outputs));
+        for (to, row) in panel.chunks_exact_mut(width).zip(rows) {
+            to[..columns.len()].copy_from_slice(&row[columns.clone()]);
+            to[columns.len()..].fill(0.0);
+        }
+    }
+}
+
+/// A tile of `W x + b`, of a panel; `x(row, input)`.
+#[inline(always)]
+fn sums<S: Simd, const ROWS: usize>(
+    simd: S,
+    x: impl Fn(usize, usize) -> f32,
+    inputs: usize,
+    panel: &[f32],
+) -> [[S::f32s; VECTORS]; ROWS] {
+    let lanes = S::f32s::LEN;
+    let load = |row: &[f32]| -> [S::f32s; VECTORS] {
+        std::array::from_fn(|v| S::f32s::from_slice(simd, &row[v * lanes..][..lanes]))
+    };
+    let (bias, weights) = panel.split_at(VECTORS * lanes);
+    let mut sums = [load(bias); ROWS];
+    for (i, weights) in weights.chunks_exact(VECTORS * lanes).enumerate().take(inputs) {
+        let weights = load(weights);
         for r in 0..ROWS {
+            let x = S::f32s::splat(simd, x(r, i));
             for v in 0..VECTORS {
-                let sum = if relu { sums[r][v].max(zero) } else { sums[r][v] };
-                sum.store_slice(&mut y[r * outputs + column + v * lanes..][..lanes]);
+                sums[r][v] = x.mul_add(weights[v], sums[r][v]);
             }
         }
+    }
+    sums
+}
+
+/// Sums of a row -> y, which may end before they do.
+#[inline(always)]
+fn store<S: Simd>(simd: S, sums: &[S::f32s; VECTORS], relu: bool, y: &mut [f32]) {
+    let (lanes, zero) = (S::f32s::LEN, S::f32s::splat(simd, 0.0));
+    let whole = y.len() == VECTORS * lanes;
+    for v in 0..VECTORS {
+        let sum = if relu { sums[v].max(zero) } else { sums[v] };
+        if whole {
+            sum.store_slice(&mut y[v * lanes..][..lanes]);
+        } else {
+            y.iter_mut().skip(v * lanes).zip(sum.as_slice()).for_each(|(y, sum)| *y = *sum);
+        }
+    }
+}
+
+/// One row alone, weights in place: they are read once.
+#[inline(always)]
+fn row<S: Simd>(simd: S, x: &[f32], weight: &[f32], bias: &[f32], relu: bool, y: &mut [f32]) {
+    y.copy_from_slice(bias);
+    for (x, weight) in x.iter().zip(weight.chunks_exact(bias.len())) {
+        axpy(simd, *x, weight, y);
+    }
+    if relu {
+        y.iter_mut().for_each(|y| *y = y.max(0.0));
     }
 }
 

@@ -90,7 +90,8 @@ pub fn run(model: &HostModel, poses: &[&[f32]], runs: usize) -> Result<()> {
     let mut confidence = Confidence::new(model);
     for run in 0..runs {
         model.rig.read(poses[run % poses.len()], &mut room.joints)?;
-        room.confidence[0] = confidence.as_mut().map_or(1.0, |confidence| confidence.of(&model.rig, &room.joints));
+        let share = confidence.as_mut().map_or(1.0, |confidence| confidence.of(&model.rig, &room.joints));
+        (room.skeleton_share[0], room.mesh_share[0]) = (share, share);
         device.next = 0;
         predict(&mut device, model, Streams::Both, &mut room);
     }

@@ -7,7 +7,7 @@ use ctsn_core::cpu::Level;
 use ctsn_core::cpu::network::attend::softmax;
 use ctsn_core::cpu::vector::{axpy, dot};
 use ctsn_core::topology::Graph;
-use fearless_simd::{Simd, dispatch};
+use fearless_simd::{Simd, SimdBase, dispatch};
 
 /// What the forward operation read.
 pub struct Inputs<'a> {
@@ -26,7 +26,7 @@ pub struct Inputs<'a> {
 pub struct Scratch {
     /// α, then ds [edges, 2, C].
     edges: Vec<f32>,
-    /// α and dα of one vertex [C, degree].
+    /// α and dα of one vertex [C, degree, rounded up to whole vectors].
     alpha: Vec<f32>,
     dalpha: Vec<f32>,
     /// dU of one vertex [F].
@@ -51,6 +51,7 @@ pub fn attend(
             8 => kernel::<_, 8>(simd, inputs, g, scratch, dprojected, dedge),
             16 => kernel::<_, 16>(simd, inputs, g, scratch, dprojected, dedge),
             32 => kernel::<_, 32>(simd, inputs, g, scratch, dprojected, dedge),
+            64 => kernel::<_, 64>(simd, inputs, g, scratch, dprojected, dedge),
             _ => kernel::<_, 0>(simd, inputs, g, scratch, dprojected, dedge),
         }
     });
@@ -98,21 +99,24 @@ fn own<S: Simd>(simd: S, inputs: &Inputs, i: usize, g: &[f32], d: usize, scratch
     let (query, degree, scale) = (projected(i as u32, 0), neighbours.len(), 1.0 / (d as f32).sqrt());
     let Scratch { edges, alpha, dalpha, .. } = scratch;
     dquery.fill(0.0);
-    alpha.resize(heads * degree, 0.0);
-    dalpha.resize(heads * degree, 0.0);
+    // Filled up to whole vectors, as softmax wants them.
+    let row = degree.next_multiple_of(S::f32s::LEN);
+    alpha.clear();
+    alpha.resize(heads * row, f32::MIN);
+    dalpha.resize(heads * row, 0.0);
     for (e, j) in neighbours.iter().enumerate() {
         let (key, value) = (projected(*j, 1), projected(*j, 2));
         for (c, at) in (0..features).step_by(d).enumerate() {
-            alpha[c * degree + e] = dot(simd, &query[at..at + d], &key[at..at + d]) * scale;
-            dalpha[c * degree + e] = dot(simd, &g[at..at + d], &value[at..at + d]);
+            alpha[c * row + e] = dot(simd, &query[at..at + d], &key[at..at + d]);
+            dalpha[c * row + e] = dot(simd, &g[at..at + d], &value[at..at + d]);
         }
     }
-    if degree > 0 {
-        softmax(simd, alpha, degree);
+    for alpha in alpha.chunks_exact_mut(row.max(1)) {
+        softmax(simd, scale, alpha);
     }
     let edges = &mut edges[inputs.graph.offsets[i] as usize * 2 * heads..][..degree * 2 * heads];
     for c in 0..heads {
-        let (alpha, dalpha) = (&alpha[c * degree..][..degree], &dalpha[c * degree..][..degree]);
+        let (alpha, dalpha) = (&alpha[c * row..][..degree], &dalpha[c * row..][..degree]);
         let mean: f32 = alpha.iter().zip(dalpha).map(|(alpha, dalpha)| alpha * dalpha).sum();
         for (edge, (alpha, dalpha)) in edges.chunks_exact_mut(2 * heads).zip(alpha.iter().zip(dalpha)) {
             edge[c] = *alpha;
