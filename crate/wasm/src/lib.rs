@@ -136,7 +136,7 @@ impl Predictor {
     pub fn predict_folds(&mut self, folds: &mut Folds, aim: bool, step: f32, skeleton: f32, mesh: f32) -> bool {
         let shares = Shares { skeleton, mesh };
         let done = self.inner.predict_folds(&self.pose, &mut folds.0, (aim, step), shares);
-        self.failure = done.err().map(Error::from);
+        self.failure = done.err();
         self.failure.is_none()
     }
 
