@@ -2,7 +2,7 @@ import { Streams, type Folds, type Predictor } from './raw.js';
 
 /**
  * How much of the network a prediction takes: all of it; `coarse`, the skeleton stream alone, without the finest folds;
- * or `skinned`, the garment at rest, moved by its joints.
+ * or `skinned`, plain skinning: the garment at rest, moved by its joints.
  */
 export type Quality = 'full' | 'coarse' | 'skinned';
 
@@ -45,7 +45,7 @@ export class Fade {
   /** @internal The streams that have a share. */
   get streams(): Streams {
     if (this.#mesh > 0) return Streams.Both;
-    return this.#skeleton > 0 ? Streams.Skeleton : Streams.Rest;
+    return this.#skeleton > 0 ? Streams.Skeleton : Streams.None;
   }
 
   /** @internal The share of the skeleton stream's residual. */

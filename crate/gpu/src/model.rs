@@ -12,7 +12,7 @@ use std::cell::RefCell;
 use std::sync::Arc;
 
 /// Streams in the order in which frames are recorded.
-const ORDER: [Streams; 4] = [Streams::Both, Streams::Skeleton, Streams::Rest, Streams::None];
+const ORDER: [Streams; 3] = [Streams::Both, Streams::Skeleton, Streams::None];
 
 /// Where the frame of `streams` is among those recorded.
 pub(crate) fn place(streams: Streams) -> usize {
@@ -32,7 +32,7 @@ pub(crate) struct Inner {
     pub constants: Vec<wgpu::Buffer>,
     pub rooms: Vec<Room>,
     /// Frames, by streams as [`ORDER`] has them.
-    pub frames: [Vec<Dispatch>; 4],
+    pub frames: [Vec<Dispatch>; 3],
     /// Rooms of what is written and read from outside.
     pub joints: usize,
     /// What the residuals of skeleton and mesh stream count; nothing where a model lacks the stream.
@@ -85,7 +85,7 @@ fn record(gpu: &Gpu, model: &HostModel) -> Result<Model> {
         predict(&mut recorder, &recorded, streams, &mut a);
         recorder.take()
     };
-    let frames = [one(ORDER[0])?, one(ORDER[1])?, one(ORDER[2])?, one(ORDER[3])?];
+    let frames = [one(ORDER[0])?, one(ORDER[1])?, one(ORDER[2])?];
     for dispatch in frames.iter().flatten() {
         gpu.pipeline(dispatch.shader, dispatch.room);
     }

@@ -15,7 +15,7 @@ pub struct Predictor {
     confidence: f32,
     pub(crate) buffers: Vec<wgpu::Buffer>,
     /// Frames, by streams as the model records them.
-    frames: [Vec<Step>; 4],
+    frames: [Vec<Step>; 3],
     pub(crate) reader: Reader,
 }
 
@@ -57,7 +57,7 @@ impl Predictor {
         let shown = |room| [inner.positions, inner.normals].contains(&room) || inner.drawn.contains(&room);
         let buffers = buffers(gpu, &inner.rooms, shown);
         let step = |dispatch: &Dispatch| Step::new(gpu, dispatch, &inner.constants, &buffers);
-        let frames = [0, 1, 2, 3].map(|streams| inner.frames[streams].iter().map(step).collect());
+        let frames = [0, 1, 2].map(|streams| inner.frames[streams].iter().map(step).collect());
         let pose = vec![0.0; 12 * inner.sizes.joints];
         Self {
             model: model.clone(),
@@ -83,7 +83,7 @@ impl Predictor {
         self.predict_faded(joints, streams, Shares::ALL)
     }
 
-    /// The same with `shares` of the residuals.
+    /// The same with a share of the mesh stream's residual; towards plain skinning nothing is blended here.
     ///
     /// # Errors
     /// A pose that is none; [`Error::Lost`].
@@ -117,7 +117,7 @@ impl Predictor {
     pub(crate) fn write_pose(&self, shares: Shares) {
         let (inner, queue) = (&self.model.0, self.model.gpu().queue());
         queue.write_buffer(&self.buffers[inner.joints], 0, bytemuck::cast_slice(&self.pose));
-        for (room, share) in inner.shares.iter().zip([shares.skeleton, shares.mesh]) {
+        for (room, share) in inner.shares.iter().zip([1.0, shares.mesh]) {
             let share = self.confidence * share;
             room.iter().for_each(|room| queue.write_buffer(&self.buffers[*room], 0, bytemuck::bytes_of(&share)));
         }

@@ -12,7 +12,7 @@ use js_sys::{Array, Float32Array, Promise};
 use wasm_bindgen::prelude::*;
 
 /// The network's streams by their numbers in `crate/wasm`.
-const STREAMS: [Streams; 3] = [Streams::Both, Streams::Skeleton, Streams::Rest];
+const STREAMS: [Streams; 3] = [Streams::Both, Streams::Skeleton, Streams::None];
 
 /// A JavaScript `Error` whose `name` is the stable code of the core or of the GPU device.
 fn to_js(error: &Error) -> js_sys::Error {

@@ -14,8 +14,8 @@ pub enum Streams {
     Both = 0,
     /// The skeleton-based stream only.
     Skeleton = 1,
-    /// No stream: the garment at rest, moved by the joints.
-    Rest = 2,
+    /// No stream: plain skinning.
+    None = 2,
 }
 
 impl From<Streams> for ctsn_core::Streams {
@@ -23,7 +23,7 @@ impl From<Streams> for ctsn_core::Streams {
         match streams {
             Streams::Both => Self::Both,
             Streams::Skeleton => Self::Skeleton,
-            Streams::Rest => Self::Rest,
+            Streams::None => Self::None,
         }
     }
 }

@@ -20,8 +20,6 @@ pub enum Streams {
     Both,
     /// The skeleton stream only: the coarse prediction.
     Skeleton,
-    /// No stream: the template skinned with `W_C`, which the residuals are added to.
-    Rest,
     /// Plain skinning, the baseline of comparisons: the template skinned with `W_C^I`.
     None,
 }
@@ -33,7 +31,7 @@ pub type DeviceModel<D> = Model<<D as Device>::Buffer, <D as Device>::Indices>;
 pub struct Activations<B> {
     /// World joint transforms `G_j` [J, 3, 4].
     pub joints: B,
-    /// What Δ_S counts in this prediction, 0 to 1 [1].
+    /// What Δ_S counts in this pose, 0 to 1 [1].
     pub skeleton_share: B,
     /// What Δ_M counts in this prediction, 0 to 1 [1].
     pub mesh_share: B,
@@ -141,10 +139,20 @@ impl<B> Activations<B> {
 pub fn predict<D: Device>(device: &mut D, model: &DeviceModel<D>, streams: Streams, a: &mut Activations<D::Buffer>) {
     pose(device, model, a);
     forward(device, model, streams, Space::World, a);
-    if matches!(streams, Streams::Both | Streams::Skeleton) {
+    repair(device, model, streams, a);
+    finish(device, model, a);
+}
+
+/// Moves predicted cloth out of the body; plainly skinned cloth is shown as it is.
+pub(crate) fn repair<D: Device>(
+    device: &mut D,
+    model: &DeviceModel<D>,
+    streams: Streams,
+    a: &mut Activations<D::Buffer>,
+) {
+    if streams != Streams::None {
         collide(device, model, a);
     }
-    finish(device, model, a);
 }
 
 /// Joints -> body frame and pose vector.
@@ -178,9 +186,6 @@ pub fn forward<D: Device>(
 ) {
     if streams == Streams::None {
         return skin(device, &model.rest, &model.reference.skinning, &a.body_frame, space, &mut a.positions);
-    }
-    if streams == Streams::Rest {
-        return skin(device, &model.rest, &model.skinning, &a.body_frame, space, &mut a.positions);
     }
     skeleton(device, model, a);
     if streams == Streams::Skeleton || !model.mesh_stream {

@@ -5,19 +5,19 @@ mod folds;
 use crate::confidence::Confidence;
 use crate::cpu::{Cpu, Level};
 use crate::model::{HostModel, Sizes, Surface};
-use crate::network::{Activations, Streams, collide, finish, mesh, pose, predict, skeleton, skin};
+use crate::network::{Activations, Streams, finish, forward, mesh, pose, repair, skeleton, skin};
 use crate::operation::Space;
 use crate::pose::{Rig, Transform};
 use crate::{Error, Result};
 pub use folds::Folds;
 use std::sync::Arc;
 
-/// How much of each residual a prediction shows, 0 to 1: quality is changed by fading, so that nothing jumps.
+/// How much of each stream a prediction shows, 0 to 1: quality is changed by fading, so that nothing jumps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shares {
-    /// Of the skeleton stream's.
+    /// How much of the way from plain skinning to the skeleton stream's prediction.
     pub skeleton: f32,
-    /// Of the mesh stream's.
+    /// Of the mesh stream's residual.
     pub mesh: f32,
 }
 
@@ -120,9 +120,7 @@ impl Predictor {
         }
         folds.show(step, &a.coarse, a.mesh_share[0], &mut a.template);
         skin(device, &a.template, &model.skinning, &a.body_frame, Space::World, &mut a.positions);
-        collide(device, model, a);
-        finish(device, model, a);
-        self.check()
+        self.end(Streams::Both, shares)
     }
 
     /// Joint world transforms [J, 3, 4], row-major, metres -> positions and normals.
@@ -133,27 +131,39 @@ impl Predictor {
 
     fn run(&mut self, streams: Streams, shares: Shares) -> Result<()> {
         self.weigh(shares);
-        predict(&mut self.device, &self.model, streams, &mut self.activations);
-        self.check()
+        let (device, model, a) = (&mut self.device, &*self.model, &mut self.activations);
+        pose(device, model, a);
+        forward(device, model, streams, Space::World, a);
+        self.end(streams, shares)
     }
 
-    /// What the residuals count in the pose that was read.
-    fn weigh(&mut self, shares: Shares) {
-        let a = &mut self.activations;
-        self.confidence = self.trust.as_mut().map_or(1.0, |trust| trust.of(&self.model.rig, &a.joints));
-        a.skeleton_share[0] = self.confidence * shares.skeleton;
-        a.mesh_share[0] = self.confidence * shares.mesh;
-    }
-
-    /// Weights and poses may be finite and yet overflow together; what comes out is checked, so that NaN never leaves.
-    fn check(&self) -> Result<()> {
-        let a = &self.activations;
+    /// Predicted positions -> what is shown. Weights and poses may be finite and yet overflow together; what comes out is
+    /// checked, so that NaN never leaves.
+    fn end(&mut self, streams: Streams, shares: Shares) -> Result<()> {
+        let (device, model, a) = (&mut self.device, &*self.model, &mut self.activations);
+        if shares.skeleton < 1.0 && streams != Streams::None {
+            // The residuals alone would fade to the learned weights, which without them look ragged.
+            let plain = &mut a.template;
+            skin(device, &model.rest, &model.reference.skinning, &a.body_frame, Space::World, plain);
+            let way = a.positions.iter_mut().zip(plain);
+            way.for_each(|(shown, plain)| *shown = *plain + shares.skeleton * (*shown - *plain));
+        }
+        repair(device, model, streams, a);
+        finish(device, model, a);
         match a.positions.iter().position(|value| !value.is_finite()) {
             Some(element) => {
                 Err(Error::NotFinite { what: "positions".to_owned(), element, found: a.positions[element] })
             }
             None => Ok(()),
         }
+    }
+
+    /// What the residuals count in the pose that was read.
+    fn weigh(&mut self, shares: Shares) {
+        let a = &mut self.activations;
+        self.confidence = self.trust.as_mut().map_or(1.0, |trust| trust.of(&self.model.rig, &a.joints));
+        a.skeleton_share[0] = self.confidence;
+        a.mesh_share[0] = self.confidence * shares.mesh;
     }
 
     /// What the residuals were worth in the last pose: 1 among the poses seen in training, 0 far from them, where the

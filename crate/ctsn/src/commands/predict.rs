@@ -38,8 +38,7 @@ pub struct Arguments {
 const STREAMS: &[(&str, &str, Streams)] = &[
     ("both", "The whole network", Streams::Both),
     ("skeleton", "The skeleton stream alone: the coarse prediction", Streams::Skeleton),
-    ("rest", "No stream: the garment at rest, skinned with the learned weights", Streams::Rest),
-    ("none", "Plain skinning, with the weights of the nearest body vertices", Streams::None),
+    ("none", "Plain skinning", Streams::None),
 ];
 
 /// Predictions, and when each was done.
