@@ -2,6 +2,7 @@ import { loadModel, type BackendChoice, type ClothModel, type Progress, type Qua
 import { FileLoader } from 'three';
 import { Character, RATE } from './character.js';
 import { RunningDemo } from './demo.js';
+import { run } from './failure.js';
 import { readAddress, type Demo } from './hook.js';
 import { element, formatBytes, Panel } from './panel.js';
 import { Stage } from './stage.js';
@@ -76,13 +77,4 @@ async function start(): Promise<void> {
   } satisfies Partial<Demo>);
 }
 
-function fail(error: unknown): void {
-  hook.error = String(error);
-  element('loading').hidden = true;
-  element('failure').hidden = false;
-  element('failure-text').textContent = error instanceof Error ? error.message : String(error);
-}
-
-window.addEventListener('error', ({ error, message }) => fail(error ?? message));
-window.addEventListener('unhandledrejection', ({ reason }) => fail(reason));
-void start();
+run(start, hook);

@@ -1,6 +1,7 @@
 // A crowd of the demo's character: `?count=50` says how many, `?quality=` and `?budget=` preset the controls.
 import { loadModel, type Quality } from 'ctsn';
 import { FileLoader } from 'three';
+import { run } from '../failure.js';
 import { Meter } from '../meter.js';
 import { element } from '../panel.js';
 import { Crowd } from './crowd.js';
@@ -57,13 +58,4 @@ async function start(): Promise<void> {
   });
 }
 
-function fail(error: unknown): void {
-  hook.error = String(error);
-  element('loading').hidden = true;
-  element('failure').hidden = false;
-  element('failure-text').textContent = error instanceof Error ? error.message : String(error);
-}
-
-window.addEventListener('error', ({ error, message }) => fail(error ?? message));
-window.addEventListener('unhandledrejection', ({ reason }) => fail(reason));
-void start();
+run(start, hook);

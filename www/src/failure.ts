@@ -1,0 +1,14 @@
+import { element } from './panel.js';
+
+/** Runs a page from its beginning. What goes wrong then, or ever after, is told on the page and to its handle. */
+export function run(start: () => Promise<void>, hook: { error?: string | undefined }): void {
+  const fail = (error: unknown) => {
+    hook.error = String(error);
+    element('loading').hidden = true;
+    element('failure').hidden = false;
+    element('failure-text').textContent = error instanceof Error ? error.message : String(error);
+  };
+  window.addEventListener('error', ({ error, message }) => fail(error ?? message));
+  window.addEventListener('unhandledrejection', ({ reason }) => fail(reason));
+  void start();
+}
