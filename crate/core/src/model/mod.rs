@@ -18,6 +18,11 @@ pub const SKELETON_BASIS: &str = "skeleton.basis";
 /// Name of the mesh stream's basis `M`.
 pub const MESH_BASIS: &str = "mesh.basis";
 
+/// Whether a name among [`Model::parameters`] is that of a matrix of Φ.
+pub fn is_embedding_weight(name: &str) -> bool {
+    name.starts_with("embedding.") && name.ends_with(".weight")
+}
+
 /// A model on the host, as a file holds it.
 pub type HostModel = Model<Vec<f32>, Vec<u32>>;
 

@@ -1,7 +1,7 @@
 //! The paper's comparisons on one dataset. Every way to predict is trained by the same optimiser on the same poses, and
-//! judged on the same unseen ones. The losses are all that training has; that of penetration has nothing to do, since the
-//! models of a study have no body. Paper § "Comparisons", "Ablation Experiments". Every training leaves its outcome in a
-//! file, so that an interrupted study continues where it stopped.
+//! judged on the same unseen ones. The losses are all that training has; that of penetration has nothing to do, since
+//! the models of a study have no body. Paper § "Comparisons", "Ablation Experiments". Every training leaves its outcome
+//! in a file, so that an interrupted study continues where it stopped.
 
 mod deepsd;
 mod flops;

@@ -4,6 +4,7 @@ use super::adam::Moments;
 use super::tape::{Id, Shared};
 use crate::{Error, Result};
 use ctsn_core::file::{Tensor, Tensors};
+use ctsn_core::model::is_embedding_weight;
 
 /// One array.
 struct Parameter {
@@ -25,8 +26,8 @@ impl Parameters {
     pub fn new(shared: Shared, arrays: Vec<(String, Id)>) -> Self {
         let parameter = |(name, id): (String, Id)| {
             let values = shared.get(id);
-            let is_parted = name.starts_with("embedding.") && name.ends_with(".weight");
-            let silent = (0..values.len()).filter(|entry| is_parted && values[*entry] == 0.0).collect();
+            let silent =
+                (0..values.len()).filter(|entry| is_embedding_weight(&name) && values[*entry] == 0.0).collect();
             Parameter { silent, moments: Moments::new(values.len()), name, id }
         };
         Self { list: arrays.into_iter().map(parameter).collect(), shared }
