@@ -28,7 +28,7 @@ export class Fade {
   /** Whether a prediction was shown from which the next must not jump. */
   #shown = false;
 
-  /** Cloths that have held folds so far: each is one prediction ahead of the last, so that they do not all compute at once. */
+  /** Cloths that have held folds so far. Each is one prediction ahead of the last, so that not all compute at once. */
   static #turn = 0;
 
   /** @internal A cloth of that quality. */

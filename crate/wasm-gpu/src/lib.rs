@@ -73,8 +73,8 @@ pub struct GpuPredictor(ctsn_gpu::Predictor);
 
 #[wasm_bindgen]
 impl GpuPredictor {
-    /// Submits the prediction for the joint world matrices `pose` [16·J], column-major, metres, with those shares of the
-    /// two streams' residuals.
+    /// Submits the prediction for the joint world matrices `pose` [16·J], column-major, metres, with those shares of
+    /// the two streams.
     ///
     /// # Errors
     /// A JavaScript `Error` whose `name` is the code of what is wrong with the pose or the device.

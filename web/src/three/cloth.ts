@@ -59,7 +59,7 @@ export class Cloth<M extends Material | Material[] = Material> extends Mesh<Buff
   #confidence = 1;
   /** What was refused between two updates. */
   #failure: unknown;
-  /** Distance of the cloth from the joints, metres; measured when bounds are wanted where nobody knows the positions. */
+  /** Distance of the cloth from the joints, metres; measured when bounds of unknown positions are wanted. */
   #reach: number | undefined;
 
   constructor(model: ClothModel, character: Character, material: M, renderer?: object) {

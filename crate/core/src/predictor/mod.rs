@@ -137,8 +137,8 @@ impl Predictor {
         self.end(streams, shares)
     }
 
-    /// Predicted positions -> what is shown. Weights and poses may be finite and yet overflow together; what comes out is
-    /// checked, so that NaN never leaves.
+    /// Predicted positions -> what is shown. Weights and poses may be finite and yet overflow together; what comes out
+    /// is checked, so that NaN never leaves.
     fn end(&mut self, streams: Streams, shares: Shares) -> Result<()> {
         let (device, model, a) = (&mut self.device, &*self.model, &mut self.activations);
         if shares.skeleton < 1.0 && streams != Streams::None {

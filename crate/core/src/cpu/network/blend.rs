@@ -1,5 +1,6 @@
 //! `Δ[i] = Σ_j w_j B_j[i]`, the weights shared by all vertices (network.md §2) or one row per vertex (§3), and `T =
-//! rest + s·Δ` (§4). The share s is 1 among the poses seen in training and where nothing is faded. Twin: shaders/blend.wgsl.
+//! rest + s·Δ` (§4). The share s is 1 among the poses seen in training and where nothing is faded. Twin:
+//! shaders/blend.wgsl.
 
 use crate::cpu::vector::dot;
 use crate::cpu::{Cpu, Kernel};
