@@ -93,5 +93,7 @@ export class Fade {
 }
 
 function toward(from: number, to: number, step: number): number {
+  // A number that is computed anew is an object to V8; one that stays is none.
+  if (from === to) return from;
   return from < to ? Math.min(from + step, to) : Math.max(from - step, to);
 }
