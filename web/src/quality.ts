@@ -7,7 +7,11 @@ import { Streams, type Folds, type Predictor } from './raw.js';
 export type Quality = 'full' | 'coarse' | 'skinned';
 
 /** Shares of the residuals of skeleton and mesh stream that each quality shows. */
-const shares = { full: [1, 1], coarse: [1, 0], skinned: [0, 0] } as const;
+const shares = {
+  full: { skeleton: 1, mesh: 1 },
+  coarse: { skeleton: 1, mesh: 0 },
+  skinned: { skeleton: 0, mesh: 0 },
+};
 
 /**
  * What one cloth shows of the network, on its way from one quality to another. A change is spread over `length`
@@ -33,7 +37,8 @@ export class Fade {
 
   /** @internal A cloth of that quality. */
   constructor(quality: Quality) {
-    [this.#skeleton, this.#mesh] = shares[quality];
+    this.#skeleton = shares[quality].skeleton;
+    this.#mesh = shares[quality].mesh;
     this.#computed = quality;
   }
 
@@ -60,7 +65,9 @@ export class Fade {
 
   /** @internal One prediction nearer to `quality`. */
   advance(quality: Quality): void {
-    const [skeleton, mesh] = shares[quality];
+    const { skeleton, mesh } = shares[quality];
+    // At rest no number is made: to V8 a new one is an object.
+    if (this.#shown && this.#skeleton === skeleton && this.#mesh === mesh) return;
     const step = this.#shown && this.length > 0 ? 1 / this.length : 1;
     this.#shown = true;
     this.#skeleton = toward(this.#skeleton, skeleton, step);
@@ -93,7 +100,5 @@ export class Fade {
 }
 
 function toward(from: number, to: number, step: number): number {
-  // A number that is computed anew is an object to V8; one that stays is none.
-  if (from === to) return from;
   return from < to ? Math.min(from + step, to) : Math.max(from - step, to);
 }
