@@ -1,6 +1,7 @@
 //! Errors of a model on simulated poses it has not seen. network.md §7, paper § "Quantitative Comparisons".
 
 mod errors;
+mod folds;
 mod judge;
 mod slow;
 mod table;
@@ -14,6 +15,7 @@ use ctsn_core::model::HostModel;
 use ctsn_core::{Predictor, Streams};
 use ctsn_rig::vertices;
 pub use errors::{Errors, Statistic};
+pub use folds::{FoldErrors, FrameFolds};
 use glam::DVec3;
 pub use judge::{Judge, PoseErrors, Run, body_distance, differences, vertex_errors};
 use rayon::prelude::*;
@@ -96,6 +98,20 @@ pub struct Report {
     /// E_dist of the network by vertex [n], metres: for pictures.
     #[serde(skip)]
     pub by_vertex: Vec<f64>,
+}
+
+impl Report {
+    /// The ways to predict, each with its name.
+    pub fn ways(&self) -> impl Iterator<Item = (&'static str, &Errors)> {
+        let ways = [
+            ("network", Some(&self.network)),
+            ("not repaired", self.unrepaired.as_ref()),
+            ("skeleton stream", Some(&self.skeleton)),
+            ("plain skinning", Some(&self.skinning)),
+            ("simulation", Some(&self.truth)),
+        ];
+        ways.into_iter().filter_map(|(name, errors)| Some((name, errors?)))
+    }
 }
 
 /// The samples of one split; an error where there are none.
