@@ -14,6 +14,7 @@ pub mod network {
     pub mod gate;
     pub mod linear;
     pub mod normals;
+    pub mod polish;
     pub mod skin;
     pub mod surface;
 }

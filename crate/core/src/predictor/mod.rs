@@ -5,7 +5,7 @@ mod folds;
 use crate::confidence::Confidence;
 use crate::cpu::{Cpu, Level};
 use crate::model::{HostModel, Sizes, Surface};
-use crate::network::{Activations, Streams, finish, forward, mesh, pose, repair, skeleton, skin};
+use crate::network::{Activations, Streams, finish, forward, mesh, polish, pose, repair, skeleton, skin};
 use crate::operation::Space;
 use crate::pose::{Rig, Transform};
 use crate::{Error, Result};
@@ -141,6 +141,9 @@ impl Predictor {
     /// is checked, so that NaN never leaves.
     fn end(&mut self, streams: Streams, shares: Shares) -> Result<()> {
         let (device, model, a) = (&mut self.device, &*self.model, &mut self.activations);
+        if streams == Streams::Both {
+            polish(device, model, a);
+        }
         if shares.skeleton < 1.0 && streams != Streams::None {
             // The residuals alone would fade to the learned weights, which without them look ragged.
             let plain = &mut a.template;

@@ -150,7 +150,7 @@ impl<'a> Judge<'a> {
 }
 
 /// Refuses a model whose cloth or joints are not those of `dataset`.
-pub(super) fn check_same(model: &ctsn_core::model::HostModel, dataset: &Dataset) -> Result<()> {
+pub fn check_same(model: &ctsn_core::model::HostModel, dataset: &Dataset) -> Result<()> {
     let setup = &dataset.setup;
     let size = |vertices: usize, triangles: &[u32]| format!("{vertices} vertices, {} triangles", triangles.len() / 3);
     let wanted = size(model.sizes.vertices, &model.triangles);
