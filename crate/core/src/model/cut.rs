@@ -9,6 +9,9 @@ use crate::{Error, Result};
 /// Steps of the polish, where neither file nor page says otherwise.
 pub const STEPS: usize = 16;
 
+/// More steps than this are refused where someone asks for them: they take longer than the network.
+pub const MOST_STEPS: usize = 256;
+
 /// The garment without strain.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cut<B> {

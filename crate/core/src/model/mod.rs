@@ -9,7 +9,7 @@ mod write;
 use crate::pose::Rig;
 use crate::topology::Graph;
 pub use body::{Body, Fans, areas};
-pub use cut::{Cut, STEPS};
+pub use cut::{Cut, MOST_STEPS, STEPS};
 use std::sync::Arc;
 pub use write::Storage;
 
@@ -182,6 +182,14 @@ impl<B> Layer<B> {
 }
 
 impl<B, I> Model<B, I> {
+    /// Has the cloth polished by another number of steps, where the model knows how it was cut.
+    pub fn polish(mut self, steps: Option<usize>) -> Self {
+        if let (Some(cut), Some(steps)) = (&mut self.cut, steps) {
+            cut.steps = steps;
+        }
+        self
+    }
+
     /// The same model on other storage: `values` and `indices` move one array each, in a fixed order.
     pub fn map<'a, C, J>(
         &'a self,

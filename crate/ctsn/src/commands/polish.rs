@@ -3,7 +3,7 @@
 use super::{file_name, model};
 use anyhow::Result;
 use ctsn_core::file::{Dtype, Tensors};
-use ctsn_core::model::{Cut, HostModel, SKELETON_BASIS, STEPS, Storage};
+use ctsn_core::model::{Cut, HostModel, MOST_STEPS, SKELETON_BASIS, STEPS, Storage};
 use ctsn_rig::file;
 use ctsn_train::dataset::Dataset;
 use ctsn_train::judging::check_same;
@@ -28,12 +28,9 @@ pub struct Arguments {
     pub output: PathBuf,
 }
 
-/// More take longer than the network.
-const MOST: usize = 256;
-
 fn steps(text: &str) -> Result<usize, String> {
-    let found = text.parse().ok().filter(|steps| *steps <= MOST);
-    found.ok_or_else(|| format!("wanted a number of steps from 0 to {MOST}, found {text}"))
+    let found = text.parse().ok().filter(|steps| *steps <= MOST_STEPS);
+    found.ok_or_else(|| format!("wanted a number of steps from 0 to {MOST_STEPS}, found {text}"))
 }
 
 pub fn run(arguments: &Arguments) -> Result<()> {

@@ -1,5 +1,6 @@
-//! Whether a prediction keeps the folds of the truth. Distances do not tell: the mean of two folded cloths is smooth, and
-//! nearer to either than they are to one another. A ratio of 1 is as folded as the truth; above 1 is noise, no quality.
+//! Whether a prediction keeps the folds of the truth. Distances do not tell: the mean of two folded cloths is smooth,
+//! and nearer to either than they are to one another. A ratio of 1 is as folded as the truth; above 1 is noise, no
+//! quality.
 //! docs/network.md §7.
 
 use super::judge::vertex_normals;
