@@ -2,9 +2,10 @@
 //! network predicts. The file's tensor: `cloth.cut` [n, 3].
 
 use super::write::Writer;
+use crate::Result;
+use crate::error::{Decimal, Error};
 use crate::file::Tensors;
 use crate::topology::Graph;
-use crate::{Error, Result};
 
 /// Steps of the polish, where neither file nor page says otherwise.
 pub const STEPS: usize = 16;
@@ -37,7 +38,7 @@ impl Cut<Vec<f32>> {
         let mut squares = Vec::with_capacity(graph.neighbours.len());
         for (i, j, square) in (0..points.len()).flat_map(row) {
             if !(square >= f32::MIN_POSITIVE && square.is_finite()) {
-                let found = format!("that of vertices {i} and {j} squared is {square:e}");
+                let found = format!("that of vertices {i} and {j} squared is {}", Decimal(square));
                 return Err(Error::NotModel(format!("cloth.cut: wanted edges with a length, {found}")));
             }
             squares.push(square);
