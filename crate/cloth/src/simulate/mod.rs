@@ -21,6 +21,7 @@ mod proximity;
 mod settings;
 mod simulator;
 mod transport;
+mod untangle;
 
 #[cfg(test)]
 mod tests;

@@ -18,6 +18,7 @@ use super::outer_skin::{outer_skin, smooth};
 use super::posed::PosedBody;
 use super::settings::Settings;
 use super::transport::transport;
+use super::untangle::untangle;
 use crate::wrap::SKIN;
 use crate::{Error, Result};
 use ctsn_core::topology::Graph;
@@ -89,13 +90,8 @@ impl Simulator {
 
     /// Simulates `pose` from `template` (canonical space, as [`drape`](Self::drape) returns it).
     pub fn simulate(&self, template: &[DVec3], pose: &Pose) -> Outcome {
-        if template.len() != self.rest.len() || template.iter().any(|p| !p.is_finite()) {
-            let wanted = self.rest.len();
-            return self.refuse(format!("template: wanted {wanted} finite vertices, found {}", template.len()));
-        }
-        if !is_sound(&self.character, pose) {
-            let (wanted, found) = (self.character.joints.len(), pose.len());
-            return self.refuse(format!("pose: wanted {wanted} finite, invertible joints, found {found}"));
+        if let Err(reason) = self.check(template, pose) {
+            return self.refuse(reason);
         }
         let poses = path(&self.character, pose, self.settings.path_steps);
         let start = body_frame(&self.character, &self.character.canonical_pose());
@@ -122,6 +118,40 @@ impl Simulator {
         }
         let relaxed = solver.relax(Some(&body), self.settings.relax_iterations);
         self.outcome(solver, relaxed, pose, DAffine3::IDENTITY)
+    }
+
+    /// Relaxes `pose` from `start` (body frame [n]), which may cross itself and the body a little. The equilibrium is as
+    /// true as that which [`simulate`](Self::simulate) comes to, but of all there are the one nearest to the start.
+    pub fn relax(&self, template: &[DVec3], pose: &Pose, start: &[DVec3]) -> Outcome {
+        if let Err(reason) = self.check(template, pose).and_then(|()| self.check_cloth("start", start)) {
+            return self.refuse(reason);
+        }
+        let mut positions = start.to_vec();
+        untangle(&self.cloth.elements, &self.rings, &mut positions);
+        let mut solver = Solver::new(&self.cloth, &self.layout, &self.settings, positions);
+        let end = self.character.skinning(&to_body_frame(&self.character, pose));
+        let heights = self.cover.heights(&self.body.posed(pose), &self.collider, &end);
+        let body = self.collider.raised(&end, &heights, 1.0);
+        self.pin(&mut solver, template, &end);
+        let relaxed = solver.relax(Some(&body), self.settings.relax_iterations);
+        self.outcome(solver, relaxed, pose, DAffine3::IDENTITY)
+    }
+
+    /// Why this cannot be simulated.
+    fn check(&self, template: &[DVec3], pose: &Pose) -> std::result::Result<(), String> {
+        self.check_cloth("template", template)?;
+        if is_sound(&self.character, pose) {
+            return Ok(());
+        }
+        let (wanted, found) = (self.character.joints.len(), pose.len());
+        Err(format!("pose: wanted {wanted} finite, invertible joints, found {found}"))
+    }
+
+    fn check_cloth(&self, name: &str, cloth: &[DVec3]) -> std::result::Result<(), String> {
+        if cloth.len() == self.rest.len() && cloth.iter().all(|p| p.is_finite()) {
+            return Ok(());
+        }
+        Err(format!("{name}: wanted {} finite vertices, found {}", self.rest.len(), cloth.len()))
     }
 
     /// Springs of the attached vertices: their template positions, skinned.

@@ -36,9 +36,9 @@ fn steps(text: &str) -> Result<usize, String> {
 pub fn run(arguments: &Arguments) -> Result<()> {
     let Arguments { dataset, output, steps, .. } = arguments;
     let bytes = file::read(&arguments.model)?;
-    let (model, setup) = (model(&arguments.model)?, Dataset::read(dataset)?);
+    let (model, Dataset { setup, .. }) = (model(&arguments.model)?, Dataset::read(dataset)?);
     check_same(&model, &setup)?;
-    let cut = (*steps > 0).then(|| Cut::new(setup.setup.garment.clone(), &model.graph, *steps)).transpose()?;
+    let cut = (*steps > 0).then(|| Cut::new(setup.garment.clone(), &model.graph, *steps)).transpose()?;
     // Learned tensors stay as they are stored.
     let basis = Tensors::parse(&bytes)?.tensors.remove(SKELETON_BASIS).map(|basis| basis.dtype);
     let storage = if basis == Some(Dtype::F16) { Storage::F16 } else { Storage::F32 };

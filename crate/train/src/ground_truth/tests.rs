@@ -74,6 +74,7 @@ fn request<'a>(character: &'a Character, garment: &'a Garment) -> Request<'a> {
         names: ["a.glb", "b.glb"],
         material: ("cotton", Material::default()),
         settings: Settings::default(),
+        teacher: None,
         shard: Shard::WHOLE,
         poses: None,
         mixed: 0,

@@ -2,7 +2,7 @@
 
 use super::errors::Errors;
 use super::folds::{FoldErrors, FoldJudge, FrameFolds};
-use crate::dataset::{Dataset, Sample, Setup};
+use crate::dataset::{Sample, Setup};
 use crate::{Error, Result};
 use ctsn_cloth::simulate::BodyDistance;
 use ctsn_core::cpu::Cpu;
@@ -149,9 +149,8 @@ impl<'a> Judge<'a> {
     }
 }
 
-/// Refuses a model whose cloth or joints are not those of `dataset`.
-pub fn check_same(model: &ctsn_core::model::HostModel, dataset: &Dataset) -> Result<()> {
-    let setup = &dataset.setup;
+/// Refuses a model whose cloth or joints are not those of the dataset of `setup`.
+pub fn check_same(model: &ctsn_core::model::HostModel, setup: &Setup) -> Result<()> {
     let size = |vertices: usize, triangles: &[u32]| format!("{vertices} vertices, {} triangles", triangles.len() / 3);
     let wanted = size(model.sizes.vertices, &model.triangles);
     let found = size(setup.template.len() / 3, &setup.triangles);

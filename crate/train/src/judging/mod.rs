@@ -154,7 +154,7 @@ pub fn without_polish(model: &HostModel) -> Option<HostModel> {
 
 /// Evaluates `model` on one split of `dataset`.
 pub fn evaluate(model: &HostModel, dataset: &Dataset, split: Split) -> Result<Report> {
-    judge::check_same(model, dataset)?;
+    judge::check_same(model, &dataset.setup)?;
     let samples = unseen(dataset, split)?;
     let judge = Judge::new(&dataset.setup)?;
     let run = |model: &HostModel, streams| {
