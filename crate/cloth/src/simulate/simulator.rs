@@ -120,8 +120,8 @@ impl Simulator {
         self.outcome(solver, relaxed, pose, DAffine3::IDENTITY)
     }
 
-    /// Relaxes `pose` from `start` (body frame [n]), which may cross itself and the body a little. The equilibrium is as
-    /// true as that which [`simulate`](Self::simulate) comes to, but of all there are the one nearest to the start.
+    /// Relaxes `pose` from `start` (body frame [n]), which may cross itself and the body a little. The equilibrium is
+    /// as true as that which [`simulate`](Self::simulate) comes to, but of all there are the one nearest to the start.
     pub fn relax(&self, template: &[DVec3], pose: &Pose, start: &[DVec3]) -> Outcome {
         if let Err(reason) = self.check(template, pose).and_then(|()| self.check_cloth("start", start)) {
             return self.refuse(reason);

@@ -1,5 +1,5 @@
-//! The network as an ONNX file. network.md §1–4, all of it, and nothing of polish and repair: what `network::forward` computes
-//! for both streams, from the same joints to the same positions.
+//! The network as an ONNX file. network.md §1–4, all of it, and nothing of polish and repair: what
+//! `network::forward` computes for both streams, from the same joints to the same positions.
 //!
 //! It is not written as a `Device`, one operation after the other: what makes it fast in onnxruntime, such as edge
 //! terms from which products start, spans operations. Tests in `tests/onnx/` hold the two together.
