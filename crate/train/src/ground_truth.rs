@@ -76,9 +76,12 @@ impl<'a> Run<'a> {
             );
             return Err(Error::Simulation(reason));
         }
+        let mut wanted = request.setup();
+        if let Some(teacher) = request.teacher {
+            check_same(teacher, &wanted)?;
+        }
         let settings = request.settings.clone();
         let simulator = Simulator::new(request.character, request.garment, request.material.1, settings)?;
-        let mut wanted = request.setup();
         let setup = match Setup::read(folder)? {
             Some(found) => {
                 found.check_same(&wanted, folder)?;
@@ -90,9 +93,6 @@ impl<'a> Run<'a> {
                 wanted
             }
         };
-        if let Some(teacher) = request.teacher {
-            check_same(teacher, &setup)?;
-        }
         let template = vertices(&setup.template);
         let mut tasks = tasks(&request, poses, folder);
         let all = tasks.len();
