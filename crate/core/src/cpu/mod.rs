@@ -24,6 +24,7 @@ pub mod repair {
     pub mod closest;
     pub mod collide;
     pub mod eight;
+    pub mod rings;
     pub mod settle;
     pub mod spread;
 }
@@ -38,7 +39,7 @@ pub struct Cpu {
     linear: network::linear::Scratch,
     /// Of attention, for one vertex [C, edges].
     scores: Vec<f32>,
-    rings: repair::closest::Rings,
+    rings: repair::rings::Rings,
     dipoles: repair::bury::Dipoles,
 }
 
