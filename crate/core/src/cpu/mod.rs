@@ -12,6 +12,7 @@ pub mod network {
     pub mod exp;
     pub mod features;
     pub mod gate;
+    pub mod heads;
     pub mod linear;
     pub mod normals;
     pub mod skin;
@@ -37,8 +38,7 @@ pub use fearless_simd::Level;
 pub struct Cpu {
     level: Level,
     linear: network::linear::Scratch,
-    /// Of attention, for one vertex [C, edges].
-    scores: Vec<f32>,
+    attend: network::attend::Scratch,
     rings: repair::rings::Rings,
     dipoles: repair::bury::Dipoles,
 }
@@ -56,8 +56,8 @@ impl Cpu {
 
     /// A chosen level.
     pub fn with_level(level: Level) -> Self {
-        let (linear, scores, rings, dipoles) = Default::default();
-        Self { level, linear, scores, rings, dipoles }
+        let (linear, attend, rings, dipoles) = Default::default();
+        Self { level, linear, attend, rings, dipoles }
     }
 
     /// Runs an operation on slices.
