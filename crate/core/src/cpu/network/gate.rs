@@ -90,8 +90,7 @@ fn squares<S: Simd>(simd: S, mean: f32, values: &[f32]) -> f32 {
 #[inline(always)]
 fn normalise<S: Simd>(simd: S, mean: f32, scale: f32, [weight, bias]: [&[f32]; 2], output: &mut [f32]) {
     let lanes = S::f32s::LEN;
-    let (means, factor, zero) =
-        (S::f32s::splat(simd, mean), S::f32s::splat(simd, scale), S::f32s::splat(simd, 0.0));
+    let (means, factor, zero) = (S::f32s::splat(simd, mean), S::f32s::splat(simd, scale), S::f32s::splat(simd, 0.0));
     let whole = output.len() / lanes * lanes;
     for at in (0..whole).step_by(lanes) {
         let load = |slice: &[f32]| S::f32s::from_slice(simd, &slice[at..at + lanes]);
