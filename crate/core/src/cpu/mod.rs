@@ -12,6 +12,7 @@ pub mod network {
     pub mod exp;
     pub mod features;
     pub mod gate;
+    pub mod heads;
     pub mod linear;
     pub mod normals;
     pub mod polish;
@@ -25,6 +26,7 @@ pub mod repair {
     pub mod closest;
     pub mod collide;
     pub mod eight;
+    pub mod rings;
     pub mod settle;
     pub mod spread;
 }
@@ -37,9 +39,8 @@ pub use fearless_simd::Level;
 pub struct Cpu {
     level: Level,
     linear: network::linear::Scratch,
-    /// Of attention, for one vertex [C, edges].
-    scores: Vec<f32>,
-    rings: repair::closest::Rings,
+    attend: network::attend::Scratch,
+    rings: repair::rings::Rings,
     dipoles: repair::bury::Dipoles,
 }
 
@@ -56,8 +57,8 @@ impl Cpu {
 
     /// A chosen level.
     pub fn with_level(level: Level) -> Self {
-        let (linear, scores, rings, dipoles) = Default::default();
-        Self { level, linear, scores, rings, dipoles }
+        let (linear, attend, rings, dipoles) = Default::default();
+        Self { level, linear, attend, rings, dipoles }
     }
 
     /// Runs an operation on slices.

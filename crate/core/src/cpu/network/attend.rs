@@ -5,29 +5,38 @@
 
 use super::exp::exp;
 use super::gate::gate;
+use super::heads;
 use crate::cpu::vector::{axpy, dot, room};
 use crate::cpu::{Cpu, Kernel};
 use crate::operation::Attend;
 use crate::topology::Graph;
 use fearless_simd::{Simd, SimdBase, SimdFloat, dispatch};
 
+/// Room for one vertex.
+#[derive(Default)]
+pub struct Scratch {
+    heads: heads::Scratch,
+    /// [C, edges].
+    scores: Vec<f32>,
+}
+
 type Operands<'a> = Attend<&'a [f32], &'a mut [f32], &'a [u32]>;
 
 /// Leaves projected as q | k + U | v + U | r, where a vertex has neighbours.
 impl Kernel for Operands<'_> {
     fn run(self, cpu: &mut Cpu) {
-        let scores = &mut cpu.scores;
-        dispatch!(cpu.level, simd => kernel(simd, self, scores));
+        let scratch = &mut cpu.attend;
+        dispatch!(cpu.level, simd => kernel(simd, self, scratch));
     }
 }
 
 #[inline(always)]
-fn kernel<S: Simd>(simd: S, operands: Operands, scores: &mut Vec<f32>) {
+fn kernel<S: Simd>(simd: S, operands: Operands, scratch: &mut Scratch) {
     let Attend { offsets, neighbours, heads, projected, potentials, edge, attended, output, .. } = operands;
     let (features, potentials) = (operands.norm_bias.len(), potentials.as_chunks::<6>().0);
     let (d, graph) = (features / heads, Graph { offsets, neighbours });
     let rows = attended.chunks_exact_mut(features).zip(output.chunks_exact_mut(features));
-    let mut folded = 0;
+    let (mut folded, suits) = (0, heads::suits::<S>(heads, d));
     for (i, (attended, output)) in rows.enumerate() {
         attended.fill(0.0);
         if let Some(last) = graph.of(i).last() {
@@ -40,11 +49,11 @@ fn kernel<S: Simd>(simd: S, operands: Operands, scores: &mut Vec<f32>) {
             // A length known to the compiler spares the loops over one or two vectors: the whole takes half the time.
             let of = (i, graph.of(i));
             match d {
-                8 => attend::<S, 8>(simd, of, d, projected, scores, attended),
-                16 => attend::<S, 16>(simd, of, d, projected, scores, attended),
-                32 => attend::<S, 32>(simd, of, d, projected, scores, attended),
-                64 => attend::<S, 64>(simd, of, d, projected, scores, attended),
-                _ => attend::<S, 0>(simd, of, d, projected, scores, attended),
+                8 if suits => heads::attend::<S, 8>(simd, of, projected, &mut scratch.heads, attended),
+                16 if suits => heads::attend::<S, 16>(simd, of, projected, &mut scratch.heads, attended),
+                32 if suits => heads::attend::<S, 32>(simd, of, projected, &mut scratch.heads, attended),
+                64 if suits => heads::attend::<S, 64>(simd, of, projected, &mut scratch.heads, attended),
+                _ => attend(simd, of, d, projected, &mut scratch.scores, attended),
             }
             add_edge(simd, -1.0, edge, &potentials[i], [attended]);
         }
@@ -59,11 +68,14 @@ fn kernel<S: Simd>(simd: S, operands: Operands, scores: &mut Vec<f32>) {
 fn add_edge<S: Simd, const N: usize>(simd: S, sign: f32, edge: &[f32], potential: &[f32; 6], y: [&mut [f32]; N]) {
     let (lanes, features) = (S::f32s::LEN, edge.len() / 6);
     let whole = features / lanes * lanes;
+    let mut scales = [S::f32s::splat(simd, 0.0); 6];
+    for p in 0..6 {
+        scales[p] = S::f32s::splat(simd, sign * potential[p]);
+    }
     for at in (0..whole).step_by(lanes) {
         let mut sum = S::f32s::splat(simd, 0.0);
         for p in 0..6 {
-            let scale = S::f32s::splat(simd, sign * potential[p]);
-            sum = scale.mul_add(S::f32s::from_slice(simd, &edge[p * features + at..][..lanes]), sum);
+            sum = scales[p].mul_add(S::f32s::from_slice(simd, &edge[p * features + at..][..lanes]), sum);
         }
         for n in 0..N {
             (S::f32s::from_slice(simd, &y[n][at..at + lanes]) + sum).store_slice(&mut y[n][at..at + lanes]);
@@ -77,11 +89,10 @@ fn add_edge<S: Simd, const N: usize>(simd: S, sign: f32, edge: &[f32], potential
     }
 }
 
-/// `Σ_j α_ij v_j` of a vertex that has neighbours, added to zeros; d features per head. D: the same where it is known,
-/// else 0.
+/// `Σ_j α_ij v_j` of a vertex that has neighbours, added to zeros; d features per head, of any number.
 #[cfg_attr(target_arch = "wasm32", inline(never))]
 #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
-fn attend<S: Simd, const D: usize>(
+fn attend<S: Simd>(
     simd: S,
     (i, neighbours): (usize, &[u32]),
     d: usize,
@@ -89,7 +100,6 @@ fn attend<S: Simd, const D: usize>(
     scores: &mut Vec<f32>,
     attended: &mut [f32],
 ) {
-    let d = if D > 0 { D } else { d };
     let (features, edges) = (attended.len(), neighbours.len().next_multiple_of(S::f32s::LEN));
     let part = |j: usize, part: usize| projected[(j * 4 + part) * features..][..features].chunks_exact(d);
     let scores = room(scores, features / d * edges);

@@ -24,8 +24,11 @@ pub const ELSEWHERE: f32 = 0.1;
 impl Kernel for Collide<&[f32], &mut [f32], &[u32]> {
     fn run(self, cpu: &mut Cpu) {
         let Self { exposed, normals, offsets, corners, seeds, positions, push } = self;
-        let body = &Posed::new(exposed, normals, offsets, corners, &mut cpu.rings);
-        dispatch!(cpu.level, simd => kernel(simd, positions, body, seeds, push));
+        let rings = &mut cpu.rings;
+        dispatch!(cpu.level, simd => {
+            let body = Posed::new(simd, exposed, normals, offsets, corners, rings);
+            kernel(simd, positions, &body, seeds, push);
+        });
     }
 }
 

@@ -18,8 +18,11 @@ pub const AGAIN: f32 = 5e-4;
 impl Kernel for Settle<&[f32], &mut [f32], &[u32]> {
     fn run(self, cpu: &mut Cpu) {
         let Self { exposed, normals, offsets, corners, seeds, displacement, positions } = self;
-        let body = &Posed::new(exposed, normals, offsets, corners, &mut cpu.rings);
-        dispatch!(cpu.level, simd => kernel(simd, displacement, body, seeds, positions));
+        let rings = &mut cpu.rings;
+        dispatch!(cpu.level, simd => {
+            let body = Posed::new(simd, exposed, normals, offsets, corners, rings);
+            kernel(simd, displacement, &body, seeds, positions);
+        });
     }
 }
 
