@@ -25,7 +25,13 @@ impl Kernel for Collide<&[f32], &mut [f32], &[u32]> {
     fn run(self, cpu: &mut Cpu) {
         let Self { exposed, normals, offsets, corners, seeds, positions, push } = self;
         let body = &Posed::new(exposed, normals, offsets, corners, &mut cpu.rings);
-        dispatch!(cpu.level, simd => kernel(simd, positions, body, seeds, push));
+        let (level, n) = (cpu.level, positions.len() / 3);
+        let width = seeds.len() / n.max(1);
+        cpu.threads.share(n, [push], &mut cpu.scratch, |rows, [push], _| {
+            let (positions, seeds) =
+                (&positions[3 * rows.start..3 * rows.end], &seeds[rows.start * width..rows.end * width]);
+            dispatch!(level, simd => kernel(simd, positions, body, seeds, push));
+        });
     }
 }
 
