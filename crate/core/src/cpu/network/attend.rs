@@ -20,46 +20,127 @@ pub struct Scratch {
     scores: Vec<f32>,
 }
 
-type Operands<'a> = Attend<&'a [f32], &'a mut [f32], &'a [u32]>;
+/// What is only read.
+#[derive(Clone, Copy)]
+struct Read<'a> {
+    graph: Graph<&'a [u32]>,
+    heads: usize,
+    potentials: &'a [[f32; 6]],
+    edge: &'a [f32],
+    gate: &'a [f32],
+    norm_weight: &'a [f32],
+    norm_bias: &'a [f32],
+}
 
 /// Leaves projected as q | k + U | v + U | r, where a vertex has neighbours.
-impl Kernel for Operands<'_> {
+impl Kernel for Attend<&[f32], &mut [f32], &[u32]> {
     fn run(self, cpu: &mut Cpu) {
-        let scratch = &mut cpu.attend;
-        dispatch!(cpu.level, simd => kernel(simd, self, scratch));
+        let Attend { offsets, neighbours, heads, potentials, edge, gate, norm_weight, norm_bias, .. } = self;
+        let (graph, potentials) = (Graph { offsets, neighbours }, potentials.as_chunks::<6>().0);
+        let read = &Read { graph, heads, potentials, edge, gate, norm_weight, norm_bias };
+        let (Attend { projected, attended, output, .. }, level) = (self, cpu.level);
+        if cpu.threads.count() == 1 {
+            let scratch = &mut cpu.scratch[0].attend;
+            return dispatch!(level, simd => in_turn(simd, read, projected, scratch, attended, output));
+        }
+        // Before all: a neighbour may be another thread's.
+        cpu.threads.share(potentials.len(), [&mut *projected], &mut cpu.scratch, |rows, [projected], _| {
+            dispatch!(level, simd => fold(simd, edge, &potentials[rows], projected));
+        });
+        let projected = &*projected;
+        cpu.threads.share(
+            potentials.len(),
+            [attended, output],
+            &mut cpu.scratch,
+            |rows, [attended, output], scratch| {
+                let (scratch, first) = (&mut scratch.attend, rows.start);
+                dispatch!(level, simd => part(simd, read, first, projected, scratch, attended, output));
+            },
+        );
     }
 }
 
+/// All vertices, in one pass over memory: neighbours are near by, so what is folded no earlier than needed is read from
+/// the cache again.
 #[inline(always)]
-fn kernel<S: Simd>(simd: S, operands: Operands, scratch: &mut Scratch) {
-    let Attend { offsets, neighbours, heads, projected, potentials, edge, attended, output, .. } = operands;
-    let (features, potentials) = (operands.norm_bias.len(), potentials.as_chunks::<6>().0);
-    let (d, graph) = (features / heads, Graph { offsets, neighbours });
+fn in_turn<S: Simd>(
+    simd: S,
+    read: &Read,
+    projected: &mut [f32],
+    scratch: &mut Scratch,
+    attended: &mut [f32],
+    output: &mut [f32],
+) {
+    let features = read.norm_bias.len();
     let rows = attended.chunks_exact_mut(features).zip(output.chunks_exact_mut(features));
-    let (mut folded, suits) = (0, heads::suits::<S>(heads, d));
+    let mut folded = 0;
     for (i, (attended, output)) in rows.enumerate() {
-        attended.fill(0.0);
-        if let Some(last) = graph.of(i).last() {
-            // No earlier than needed: neighbours are near by, so the rows are read from the cache again.
-            for j in folded..=*last as usize {
-                let (key, value) = projected[(4 * j + 1) * features..][..2 * features].split_at_mut(features);
-                add_edge(simd, 1.0, edge, &potentials[j], [key, value]);
-            }
-            folded = folded.max(*last as usize + 1);
-            // A length known to the compiler spares the loops over one or two vectors: the whole takes half the time.
-            let of = (i, graph.of(i));
-            match d {
-                8 if suits => heads::attend::<S, 8>(simd, of, projected, &mut scratch.heads, attended),
-                16 if suits => heads::attend::<S, 16>(simd, of, projected, &mut scratch.heads, attended),
-                32 if suits => heads::attend::<S, 32>(simd, of, projected, &mut scratch.heads, attended),
-                64 if suits => heads::attend::<S, 64>(simd, of, projected, &mut scratch.heads, attended),
-                _ => attend(simd, of, d, projected, &mut scratch.scores, attended),
-            }
-            add_edge(simd, -1.0, edge, &potentials[i], [attended]);
+        if let Some(last) = read.graph.of(i).last() {
+            let wanted = folded..(*last as usize + 1).max(folded);
+            folded = wanted.end;
+            let projected = &mut projected[4 * features * wanted.start..4 * features * wanted.end];
+            fold(simd, read.edge, &read.potentials[wanted], projected);
         }
-        let skip = &projected[(i * 4 + 3) * features..][..features];
-        gate(simd, attended, skip, operands.gate, operands.norm_weight, operands.norm_bias, output);
+        vertex(simd, read, i, projected, scratch, attended, output);
     }
+}
+
+/// The vertices from `first`, of folded rows.
+#[inline(always)]
+fn part<S: Simd>(
+    simd: S,
+    read: &Read,
+    first: usize,
+    projected: &[f32],
+    scratch: &mut Scratch,
+    attended: &mut [f32],
+    output: &mut [f32],
+) {
+    let features = read.norm_bias.len();
+    let rows = attended.chunks_exact_mut(features).zip(output.chunks_exact_mut(features));
+    for (i, (attended, output)) in rows.enumerate() {
+        vertex(simd, read, first + i, projected, scratch, attended, output);
+    }
+}
+
+/// k + U | v + U of some vertices.
+#[inline(always)]
+fn fold<S: Simd>(simd: S, edge: &[f32], potentials: &[[f32; 6]], projected: &mut [f32]) {
+    let features = edge.len() / 6;
+    for (potential, projected) in potentials.iter().zip(projected.chunks_exact_mut(4 * features)) {
+        let (key, value) = projected[features..3 * features].split_at_mut(features);
+        add_edge(simd, 1.0, edge, potential, [key, value]);
+    }
+}
+
+/// ĥ and h of one vertex.
+#[inline(always)]
+fn vertex<S: Simd>(
+    simd: S,
+    read: &Read,
+    i: usize,
+    projected: &[f32],
+    scratch: &mut Scratch,
+    attended: &mut [f32],
+    output: &mut [f32],
+) {
+    let (of, features) = ((i, read.graph.of(i)), attended.len());
+    let d = features / read.heads;
+    attended.fill(0.0);
+    if !of.1.is_empty() {
+        let suits = heads::suits::<S>(read.heads, d);
+        // A length known to the compiler spares the loops over one or two vectors: the whole takes half the time.
+        match d {
+            8 if suits => heads::attend::<S, 8>(simd, of, projected, &mut scratch.heads, attended),
+            16 if suits => heads::attend::<S, 16>(simd, of, projected, &mut scratch.heads, attended),
+            32 if suits => heads::attend::<S, 32>(simd, of, projected, &mut scratch.heads, attended),
+            64 if suits => heads::attend::<S, 64>(simd, of, projected, &mut scratch.heads, attended),
+            _ => attend(simd, of, d, projected, &mut scratch.scores, attended),
+        }
+        add_edge(simd, -1.0, read.edge, &read.potentials[i], [attended]);
+    }
+    let skip = &projected[(i * 4 + 3) * features..][..features];
+    gate(simd, attended, skip, read.gate, read.norm_weight, read.norm_bias, output);
 }
 
 /// y += sign · `W_e` potential, of one vertex, for each y [F].

@@ -10,17 +10,22 @@ use fearless_simd::{Simd, dispatch};
 impl Kernel for Blend<&[f32], &mut [f32]> {
     fn run(self, cpu: &mut Cpu) {
         let Self { weights, basis, rest, share, residual, template } = self;
-        dispatch!(cpu.level, simd => kernel(simd, weights, basis, residual));
-        let share = share[0];
-        for ((template, rest), residual) in template.iter_mut().zip(rest).zip(residual) {
-            *template = rest + share * *residual;
-        }
+        let (level, share, count) = (cpu.level, share[0], basis.len() / rest.len());
+        let shared = weights.len() == count;
+        let outputs = [residual, template];
+        cpu.threads.share(rest.len() / 3, outputs, &mut cpu.scratch, |rows, [residual, template], _| {
+            let weights = if shared { weights } else { &weights[rows.start * count..rows.end * count] };
+            let (basis, rest) = (&basis[3 * rows.start * count..], &rest[3 * rows.start..]);
+            dispatch!(level, simd => kernel(simd, weights, basis, count, residual));
+            for ((template, rest), residual) in template.iter_mut().zip(rest).zip(residual) {
+                *template = rest + share * *residual;
+            }
+        });
     }
 }
 
 #[inline(always)]
-fn kernel<S: Simd>(simd: S, weights: &[f32], basis: &[f32], residual: &mut [f32]) {
-    let count = basis.len() / residual.len();
+fn kernel<S: Simd>(simd: S, weights: &[f32], basis: &[f32], count: usize, residual: &mut [f32]) {
     let shared = weights.len() == count;
     for (i, (residual, basis)) in residual.chunks_exact_mut(3).zip(basis.chunks_exact(3 * count)).enumerate() {
         let weights = if shared { weights } else { &weights[i * count..][..count] };

@@ -7,7 +7,13 @@ use fearless_simd::{Simd, SimdBase, SimdFloat, dispatch, f32x4};
 impl Kernel for Skin<&[f32], &mut [f32], &[u32]> {
     fn run(self, cpu: &mut Cpu) {
         let Self { rest, joints, weights, transforms, space, positions } = self;
-        dispatch!(cpu.level, simd => kernel(simd, rest, joints, weights, transforms, space, positions));
+        let (level, n) = (cpu.level, rest.len() / 3);
+        let width = weights.len() / n;
+        cpu.threads.share(n, [positions], &mut cpu.scratch, |rows, [positions], _| {
+            let (rest, slots) = (&rest[3 * rows.start..3 * rows.end], rows.start * width..rows.end * width);
+            let (joints, weights) = (&joints[slots.clone()], &weights[slots]);
+            dispatch!(level, simd => kernel(simd, rest, joints, weights, transforms, space, positions));
+        });
     }
 }
 

@@ -24,10 +24,14 @@ pub const ELSEWHERE: f32 = 0.1;
 impl Kernel for Collide<&[f32], &mut [f32], &[u32]> {
     fn run(self, cpu: &mut Cpu) {
         let Self { exposed, normals, offsets, corners, seeds, positions, push } = self;
-        let rings = &mut cpu.rings;
-        dispatch!(cpu.level, simd => {
-            let body = Posed::new(simd, exposed, normals, offsets, corners, rings);
-            kernel(simd, positions, &body, seeds, push);
+        let (level, rings) = (cpu.level, &mut cpu.rings);
+        let body = &dispatch!(level, simd => Posed::new(simd, exposed, normals, offsets, corners, rings));
+        let n = positions.len() / 3;
+        let width = seeds.len() / n.max(1);
+        cpu.threads.share(n, [push], &mut cpu.scratch, |rows, [push], _| {
+            let (positions, seeds) =
+                (&positions[3 * rows.start..3 * rows.end], &seeds[rows.start * width..rows.end * width]);
+            dispatch!(level, simd => kernel(simd, positions, body, seeds, push));
         });
     }
 }
