@@ -1,5 +1,6 @@
-//! Rows of an operation shared out over threads: each thread gets as many, one after the other, and scratch of its own. A
-//! row is computed by the same instructions whatever thread has it, so the numbers do not depend on how many there are.
+//! Rows of an operation shared out over threads: each thread gets as many, one after the other, and scratch of its own.
+//! A row is computed by the same instructions whatever thread has it, so the numbers do not depend on how many there
+//! are.
 
 use std::ops::Range;
 #[cfg(feature = "threads")]
@@ -37,8 +38,8 @@ impl Threads {
         1
     }
 
-    /// Does `work` on one of the threads. Once there, sharing out costs no change of threads: so a prediction is entered
-    /// as a whole. Now and then, every 63 times, this makes rayon allocate a block of its queue.
+    /// Does `work` on one of the threads. Once there, sharing out costs no change of threads: so a prediction is
+    /// entered as a whole. Now and then, every 63 times, this makes rayon allocate a block of its queue.
     pub fn enter<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
         #[cfg(feature = "threads")]
         if let Some(pool) = &self.pool {
