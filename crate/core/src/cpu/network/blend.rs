@@ -1,6 +1,8 @@
 //! `Δ[i] = Σ_j w_j B_j[i]`, the weights shared by all vertices (network.md §2) or one row per vertex (§3), and `T =
 //! rest + s·Δ` (§4). The share s is 1 among the poses seen in training and where nothing is faded. Twin:
 //! shaders/blend.wgsl.
+//! Bases stay f32: of a coarse prediction of 5,056 vertices they take 0.03 ms natively and 0.06 ms in Chromium, where
+//! f16 has no instruction.
 
 use crate::cpu::vector::dot;
 use crate::cpu::{Cpu, Kernel};

@@ -40,7 +40,7 @@ fn kernel<S: Simd>(
                 rows[r] = f32x4::from_slice(simd, &transform[4 * r..][..4]).mul_add(weight, rows[r]);
             }
         }
-        // No closures: outside of this crate's own build they were not compiled for the level, at twice the time.
+        // No closures: natively they were not compiled for the level, which took twice the time.
         let rows = [rows[0].as_array(), rows[1].as_array(), rows[2].as_array()];
         let [x, y, z] = [apply(rows[0], rest), apply(rows[1], rest), apply(rows[2], rest)];
         let blended = [x, y, z];

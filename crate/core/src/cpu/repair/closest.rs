@@ -161,6 +161,8 @@ impl<'a> Posed<'a> {
 
     /// The closest of the triangles around a vertex.
     /// Tried and rejected:
+    /// - to take a block of cloth vertices through each step of the search together: natively it saved 6 % of the
+    ///   repair, in Chromium nothing;
     /// - to go on from the closest triangle to those around it, or around the corner next to a foot on the rim: slow
     ///   motion of a cape trembled as before, and as much was left inside;
     /// - to keep deep vertices on one side of a thin leg, the side of the first seed's normal, of the cloth's own
