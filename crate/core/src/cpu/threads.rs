@@ -40,6 +40,7 @@ impl Threads {
 
     /// Does `work` on one of the threads. Once there, sharing out costs no change of threads: so a prediction is
     /// entered as a whole. Now and then, every 63 times, this makes rayon allocate a block of its queue.
+    #[inline(always)]
     pub fn enter<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
         #[cfg(feature = "threads")]
         if let Some(pool) = &self.pool {
@@ -50,6 +51,7 @@ impl Threads {
 
     /// Calls `work(rows, outputs of these rows, scratch)` for all `rows`, a part of them per thread. An output has the
     /// same number of values for each row. `scratch`: one for each thread.
+    #[inline(always)]
     pub(super) fn share<const N: usize, S: Send>(
         &self,
         rows: usize,
@@ -64,6 +66,13 @@ impl Threads {
         }
         work(0..rows, outputs, &mut scratch[0]);
     }
+}
+
+/// The numbers of some `rows` of an operand that has `width` for each. Without threads the rows are all there are: a page
+/// need not download the check.
+#[inline(always)]
+pub(super) fn of<'a, T>(operand: &'a [T], rows: &Range<usize>, width: usize) -> &'a [T] {
+    if cfg!(feature = "threads") { &operand[rows.start * width..rows.end * width] } else { operand }
 }
 
 /// As many parts as there is scratch. (`scope` and `broadcast` allocate at each call, `join` does not.)

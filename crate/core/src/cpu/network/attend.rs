@@ -76,10 +76,11 @@ fn in_turn<S: Simd>(
     let mut folded = 0;
     for (i, (attended, output)) in rows.enumerate() {
         if let Some(last) = read.graph.of(i).last() {
-            let wanted = folded..(*last as usize + 1).max(folded);
-            folded = wanted.end;
-            let projected = &mut projected[4 * features * wanted.start..4 * features * wanted.end];
-            fold(simd, read.edge, &read.potentials[wanted], projected);
+            for j in folded..=*last as usize {
+                let (key, value) = projected[(4 * j + 1) * features..][..2 * features].split_at_mut(features);
+                add_edge(simd, 1.0, read.edge, &read.potentials[j], [key, value]);
+            }
+            folded = folded.max(*last as usize + 1);
         }
         vertex(simd, read, i, projected, scratch, attended, output);
     }

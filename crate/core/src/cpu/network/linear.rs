@@ -5,6 +5,7 @@
 //! lines of the cache. The copy costs 1 / rows of the product, so it is made anew for each call: weights may change
 //! between any two, as training does.
 
+use crate::cpu::threads::of;
 use crate::cpu::vector::{axpy, room};
 use crate::cpu::{Cpu, Kernel};
 use crate::operation::{Activation, Linear};
@@ -36,7 +37,7 @@ impl Kernel for Linear<&[f32], &mut [f32]> {
         let rows = y.len() / bias.len();
         let panels = dispatch!(level, simd => pack(simd, rows, weight, bias, &mut cpu.panels));
         cpu.threads.share(rows, [y], &mut cpu.scratch, |rows, [y], scratch| {
-            let x = &x[rows.start * inputs..rows.end * inputs];
+            let x = of(x, &rows, inputs);
             let (operands, tiles) = (Operands { x, weight, bias, relu, panels }, &mut scratch.tiles);
             dispatch!(level, simd => product(simd, &operands, tiles, y));
         });
@@ -48,12 +49,7 @@ impl Kernel for Linear<&[f32], &mut [f32]> {
 /// tile of x must lie together, too (40 GFLOP/s instead of 32); natively that costs a third where outputs are few.
 #[inline(always)]
 fn product<S: Simd>(simd: S, operands: &Operands, tiles: &mut Vec<f32>, y: &mut [f32]) {
-    let Operands { x, weight, bias, relu, panels } = *operands;
-    if panels.is_empty() {
-        for (x, y) in x.chunks_exact(weight.len() / bias.len()).zip(y.chunks_exact_mut(bias.len())) {
-            row(simd, x, weight, bias, relu, y);
-        }
-    } else if S::f32s::LEN > 4 {
+    if S::f32s::LEN > 4 {
         blocks::<S, HIGH, false>(simd, operands, tiles, y);
     } else {
         blocks::<S, LOW, true>(simd, operands, tiles, y);
@@ -73,6 +69,12 @@ fn blocks<S: Simd, const ROWS: usize, const TOGETHER: bool>(
     let Operands { x, weight, bias, relu, panels } = *operands;
     let (inputs, outputs, width) = (weight.len() / bias.len(), bias.len(), VECTORS * S::f32s::LEN);
     let rows = y.len() / outputs;
+    if rows < ROWS {
+        for (x, y) in x.chunks_exact(inputs).zip(y.chunks_exact_mut(outputs)) {
+            row(simd, x, weight, bias, relu, y);
+        }
+        return;
+    }
     for start in (0..rows).step_by(BLOCK) {
         let (tiles, last) = (BLOCK.min(rows - start).div_ceil(ROWS), rows - ROWS);
         // The last tile of all ends with the last row: some rows are computed twice, alike.

@@ -1,5 +1,6 @@
 //! Linear blend skinning `x_i = Σ_j W[i,j] A_j T_i`, then `N⁻¹` where the world is wanted. network.md §4.
 
+use crate::cpu::threads::of;
 use crate::cpu::{Cpu, Kernel};
 use crate::operation::{Skin, Space};
 use fearless_simd::{Simd, SimdBase, SimdFloat, dispatch, f32x4};
@@ -10,8 +11,8 @@ impl Kernel for Skin<&[f32], &mut [f32], &[u32]> {
         let (level, n) = (cpu.level, rest.len() / 3);
         let width = weights.len() / n;
         cpu.threads.share(n, [positions], &mut cpu.scratch, |rows, [positions], _| {
-            let (rest, slots) = (&rest[3 * rows.start..3 * rows.end], rows.start * width..rows.end * width);
-            let (joints, weights) = (&joints[slots.clone()], &weights[slots]);
+            let (joints, weights) = (of(joints, &rows, width), of(weights, &rows, width));
+            let rest = of(rest, &rows, 3);
             dispatch!(level, simd => kernel(simd, rest, joints, weights, transforms, space, positions));
         });
     }

@@ -4,6 +4,7 @@
 //! find parts of the body that it never came near. Twin: shaders/collide.wgsl.
 
 use super::closest::{NOTHING, Posed, nearer};
+use crate::cpu::threads::of;
 use crate::cpu::{Cpu, Kernel};
 use crate::operation::Collide;
 use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask, dispatch};
@@ -29,8 +30,7 @@ impl Kernel for Collide<&[f32], &mut [f32], &[u32]> {
         let n = positions.len() / 3;
         let width = seeds.len() / n.max(1);
         cpu.threads.share(n, [push], &mut cpu.scratch, |rows, [push], _| {
-            let (positions, seeds) =
-                (&positions[3 * rows.start..3 * rows.end], &seeds[rows.start * width..rows.end * width]);
+            let (positions, seeds) = (of(positions, &rows, 3), of(seeds, &rows, width));
             dispatch!(level, simd => kernel(simd, positions, body, seeds, push));
         });
     }
