@@ -68,8 +68,8 @@ impl Threads {
     }
 }
 
-/// The numbers of some `rows` of an operand that has `width` for each. Without threads the rows are all there are: a page
-/// need not download the check.
+/// The numbers of some `rows` of an operand that has `width` for each. Without threads the rows are all there are: a
+/// page need not download the check.
 #[inline(always)]
 pub(super) fn of<'a, T>(operand: &'a [T], rows: &Range<usize>, width: usize) -> &'a [T] {
     if cfg!(feature = "threads") { &operand[rows.start * width..rows.end * width] } else { operand }
