@@ -3,6 +3,7 @@
 
 mod burial;
 mod cloth;
+mod coarse;
 mod collider;
 mod contact;
 mod cover;
@@ -10,6 +11,7 @@ mod crossing;
 mod distance;
 mod elastic;
 mod grain;
+mod level;
 mod material;
 mod matrix;
 mod neighbourhood;

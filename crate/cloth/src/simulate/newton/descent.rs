@@ -3,11 +3,14 @@
 use glam::DVec3;
 
 use super::Solver;
+use super::memory::Memory;
 
 /// Longest move of a vertex in one iteration, metres.
 const LONGEST_MOVE: f64 = 0.03;
 /// Steps with an old factor after each Newton step.
 const CORRECTIONS: usize = 2;
+/// The same for a fine cloth, whose steps remember one another.
+const FINE_CORRECTIONS: usize = 8;
 
 /// Share of the barrier's offset that being carried along leaves between layers, and how often vertices are joined for
 /// that.
@@ -86,12 +89,17 @@ impl Solver<'_> {
     /// leaves behind. Without them the same rest took 2.8 times the iterations.
     fn correct(&mut self, trial: &mut Vec<DVec3>, share: f64, h: f64) -> f64 {
         let mut energy = self.energy(trial) + self.inertia(trial, h);
-        for _ in 0..CORRECTIONS {
+        let fine = self.cloth.is_fine();
+        let mut memory = fine.then(|| Memory::new(&self.positions, &self.gradient));
+        for _ in 0..if fine { FINE_CORRECTIONS } else { CORRECTIONS } {
             let mut gradient = self.gradient(trial);
             for i in 0..trial.len() {
                 gradient[i] += (trial[i] - self.positions[i]) * (self.cloth.elastic.masses[i] / (h * h));
             }
-            let step = self.matrix.step(&gradient);
+            let step = match &mut memory {
+                Some(memory) => memory.step(&mut self.matrix, trial, gradient),
+                None => self.matrix.step(&gradient),
+            };
             let better: Vec<DVec3> = trial.iter().zip(&step).map(|(x, d)| *x + *d).collect();
             let covered = self.neighbourhood.covers(&better, share);
             if !covered || self.neighbourhood.clear_way(trial, &step) < 1.0 {
