@@ -12,3 +12,4 @@ mod pose;
 mod scene;
 mod sphere;
 mod through;
+mod wrinkles;
