@@ -2,46 +2,76 @@
 // npm run bench -- --stages: every operation natively, beside the machine's limits.
 // npm run bench -- --dial: what a mesh stream in every k-th frame costs in accuracy.
 // npm run bench -- --peers: beside other runtimes, into docs/results.md.
+import { copyFileSync, mkdirSync, writeFileSync } from 'node:fs';
+import path from 'node:path';
 import { chromium } from './browser.mjs';
-import { measureDial } from './dial.mjs';
+import { demo, measureDial } from './dial.mjs';
 import { buildLibrary } from './library.mjs';
 import { inPage, withServer } from './page.mjs';
-import { comparePeers, PAPER } from './peers.mjs';
+import { comparePeers, PAPER, withoutBody } from './peers.mjs';
 import { at, main, need, say } from './step.mjs';
 
 const RUNS = 7;
 const PREDICTIONS = 30;
 
-/** In the page: median milliseconds of whole `predictCloth` calls, by quality and run; every call has another pose. */
-async function measureInPage({ runs, predictions }) {
+/** Joints of the made-up cloth. */
+const JOINTS = 65;
+
+/** A chain of joints along the made-up cloth, every one turned a little: column-major 4×4, as three.js has them. */
+function chain() {
+  const poses = Array.from({ length: 16 }, (_, p) => Array.from({ length: JOINTS }, (_, joint) => {
+    const angle = 0.1 * Math.sin(p + joint / 8);
+    const [c, s] = [Math.cos(angle), Math.sin(angle)];
+    return [c, s, 0, 0, -s, c, 0, 0, 0, 0, 1, 0, 0.01 * p, (1.5 / JOINTS) * joint, 0, 1];
+  }));
+  return Float32Array.from(poses.flat(2));
+}
+
+/** In the page: median milliseconds of whole `predictCloth` calls, by run; every call has another pose. */
+async function measureInPage({ name, posed, quality, runs, predictions }) {
   const { loadModel } = await import('/dist/index.js');
-  const model = await loadModel('/models/bench.safetensors');
-  const poses = Array.from({ length: 8 }, (_, p) => {
-    const pose = new Float32Array(16 * model.joints.length);
-    for (let joint = 0; joint < model.joints.length; joint++) {
-      const angle = 0.1 * Math.sin(p + joint);
-      const [c, s] = [Math.cos(angle), Math.sin(angle)];
-      pose.set([c, s, 0, 0, -s, c, 0, 0, 0, 0, 1, 0, 0.01 * p, 1, 0, 1], 16 * joint);
-    }
-    return pose;
-  });
+  const model = await loadModel(`/models/${name}.safetensors`);
+  const all = new Float32Array(await (await fetch(`/models/${posed}.bin`)).arrayBuffer());
+  const stride = 16 * model.joints.length;
+  const poses = Array.from({ length: all.length / stride }, (_, p) => all.subarray(p * stride, (p + 1) * stride));
   const median = (values) => values.sort((a, b) => a - b)[values.length >> 1];
-  const result = { joints: model.joints.length, vertices: model.vertexCount, medians: {} };
-  for (const quality of ['full', 'coarse', 'skinned']) {
-    const options = { quality };
-    // The page's clock may tick in tenths of a millisecond: several at once.
-    const calls = quality === 'full' ? 1 : 10;
-    const once = (i) => {
-      const start = performance.now();
-      for (let call = 0; call < calls; call++) model.predictCloth(poses[(i + call) % poses.length], options);
-      return (performance.now() - start) / calls;
-    };
-    for (let i = 0; i < predictions; i++) once(i);
-    const run = () => median(Array.from({ length: predictions }, (_, i) => once(i)));
-    result.medians[quality] = Array.from({ length: runs }, run);
-  }
+  // The page's clock ticks in steps of 5 microseconds: several at once.
+  const calls = quality === 'full' ? 1 : 10;
+  let next = 0;
+  const once = () => {
+    const start = performance.now();
+    for (let call = 0; call < calls; call++) model.predictCloth(poses[next++ % poses.length], { quality });
+    return (performance.now() - start) / calls;
+  };
+  const run = () => median(Array.from({ length: predictions }, once));
+  run();
+  const medians = Array.from({ length: runs }, run);
+  const { vertexCount: vertices, joints: { length: joints } } = model;
   model.dispose();
-  return result;
+  return { medians, vertices, joints };
+}
+
+/** What is measured in a page: what it is called, the files of model and poses, the quality. */
+const cases = [
+  ['made-up cloth, full', 'bench', 'chain', 'full'],
+  ['made-up cloth, coarse', 'bench', 'chain', 'coarse'],
+  ['made-up cloth without a body, coarse', 'bare', 'chain', 'coarse'],
+  ['made-up cloth, skinned', 'bench', 'chain', 'skinned'],
+  ["the demo's T-shirt on unseen clips, full", 'demo', 'clips', 'full'],
+  ["the demo's T-shirt on unseen clips, coarse", 'demo', 'clips', 'coarse'],
+];
+
+/** Writes the models and poses of the cases into a folder. */
+async function prepareCases(ctsn, folder) {
+  const file = (name) => path.join(folder, name);
+  mkdirSync(folder, { recursive: true });
+  await need(ctsn, ['bench', '--write-model', file('bench.safetensors')]);
+  withoutBody(file('bench.safetensors'), file('bare.safetensors'));
+  writeFileSync(file('chain.bin'), chain());
+  copyFileSync(at('www', 'public', 'tshirt.safetensors'), file('demo.safetensors'));
+  const { model, poses } = await demo();
+  model.dispose();
+  writeFileSync(file('clips.bin'), Buffer.concat(poses.flat().map((pose) => Buffer.from(pose.buffer))));
 }
 
 /** Every operation, natively, beside the machine's limits: at the usual size and at the paper's. */
@@ -58,17 +88,19 @@ await main(async () => {
   await buildLibrary();
   if (process.argv.includes('--dial')) return measureDial();
   if (process.argv.includes('--peers')) return comparePeers(ctsn);
-  const model = at('target', 'bench.safetensors');
-  await need(ctsn, ['bench', '--write-model', model]);
   say('native, one thread');
   await need(ctsn, ['bench']);
-  say('Chromium, one thread, simd128');
-  const { medians, vertices, joints } = await withServer({ '/dist/': at('web', 'dist'), '/models/': at('target') }, (origin) =>
-    inPage(origin, measureInPage, { runs: RUNS, predictions: PREDICTIONS }));
-  const shown = (milliseconds) => `${milliseconds.toFixed(2)} ms`;
-  for (const [quality, all] of Object.entries(medians)) {
-    const sorted = [...all].sort((a, b) => a - b);
-    console.log(`predictCloth, ${quality}, n = ${vertices}, J = ${joints}: median ${shown(sorted[RUNS >> 1])} ` +
-      `(${RUNS} runs of ${PREDICTIONS}; medians from ${shown(sorted[0])} to ${shown(sorted.at(-1))})`);
-  }
+  say('Chromium, one thread, predictCloth');
+  const folder = at('target', 'bench');
+  await prepareCases(ctsn, folder);
+  await withServer({ '/dist/': at('web', 'dist'), '/models/': folder }, async (origin) => {
+    for (const [title, name, posed, quality] of cases) {
+      const options = { name, posed, quality, runs: RUNS, predictions: PREDICTIONS };
+      const { medians, vertices, joints } = await inPage(origin, measureInPage, options);
+      const sorted = medians.sort((a, b) => a - b);
+      const [median, least, most] = [sorted[RUNS >> 1], sorted[0], sorted.at(-1)].map((ms) => `${ms.toFixed(3)} ms`);
+      console.log(`${title}, n = ${vertices}, J = ${joints}: median ${median} ` +
+        `(${RUNS} runs of ${PREDICTIONS}; medians from ${least} to ${most})`);
+    }
+  });
 });

@@ -10,16 +10,30 @@ const RHYTHMS = [2, 4, 8];
 /** The last tenth of the clips was not learned from. */
 const UNSEEN = 0.1;
 
-export async function measureDial() {
+/** The demo's model, and a pose for every frame of the unseen clips of its character. */
+export async function demo() {
   const { loadModel } = await import(at('web', 'dist', 'index.js'));
-  const { Fade } = await import(at('web', 'dist', 'quality.js'));
   const model = await loadModel(readFileSync(at('www', 'public', 'tshirt.safetensors')));
   const glb = readFileSync(at('www', 'public', 'andy.glb'));
   const { scene, animations } = await new GLTFLoader().parseAsync(glb.buffer.slice(glb.byteOffset, glb.byteOffset + glb.length), '');
   const bones = model.joints.map((name) => scene.getObjectByName(name));
   const clips = animations.slice(-Math.ceil(UNSEEN * animations.length));
   const mixer = new AnimationMixer(scene);
-  const pose = new Float32Array(16 * bones.length);
+  const poses = clips.map((clip) => {
+    mixer.stopAllAction();
+    mixer.clipAction(clip).play();
+    return Array.from({ length: Math.ceil(clip.duration * RATE) }, (_, frame) => {
+      mixer.setTime(frame / RATE);
+      scene.updateMatrixWorld(true);
+      return Float32Array.from(bones.flatMap((bone) => bone.matrixWorld.elements));
+    });
+  });
+  return { model, poses };
+}
+
+export async function measureDial() {
+  const { Fade } = await import(at('web', 'dist', 'quality.js'));
+  const { model, poses } = await demo();
   const show = (quality, every) => {
     const fade = new Fade(quality);
     fade.every = every;
@@ -27,18 +41,11 @@ export async function measureDial() {
   };
   const coarse = show('coarse', 1);
   const kinds = [...RHYTHMS.map((every) => [`every ${every}`, show('full', every)]), ['coarse', coarse]];
-  for (const clip of clips) {
-    mixer.stopAllAction();
-    mixer.clipAction(clip).play();
-    for (let frame = 0; frame < clip.duration * RATE; frame++) {
-      mixer.setTime(frame / RATE);
-      scene.updateMatrixWorld(true);
-      bones.forEach((bone, joint) => pose.set(bone.matrixWorld.elements, 16 * joint));
-      const truth = model.predictCloth(pose).positions.slice();
-      for (const [, kind] of kinds) add(kind, model.predictCloth(pose, { fade: kind.fade }).positions, truth);
-    }
+  for (const pose of poses.flat()) {
+    const truth = model.predictCloth(pose).positions.slice();
+    for (const [, kind] of kinds) add(kind, model.predictCloth(pose, { fade: kind.fade }).positions, truth);
   }
-  console.log(`${clips.length} unseen clips, ${RATE} frames a second, distance from the mesh stream in every frame:`);
+  console.log(`${poses.length} unseen clips, ${RATE} frames a second, distance from the mesh stream in every frame:`);
   console.table(Object.fromEntries(kinds.map(([name, { sum, most, count }]) =>
     [name, { 'mean, mm': +(1e3 * sum / count).toFixed(3), 'most, mm': +(1e3 * most).toFixed(1) }])));
   model.dispose();

@@ -47,14 +47,19 @@ function writeTensors(file, header, data) {
   writeFileSync(file, Buffer.concat([length, text, data]));
 }
 
+/** Takes the body out of a model file, so that nothing is repaired: `to` may be the same file. */
+export function withoutBody(from, to) {
+  const bytes = readFileSync(from);
+  const length = Number(bytes.readBigUInt64LE());
+  const header = Object.entries(JSON.parse(bytes.toString('utf8', 8, 8 + length)));
+  writeTensors(to, Object.fromEntries(header.filter(([name]) => !name.startsWith('body.'))), bytes.subarray(8 + length));
+}
+
 /** The files of a size: made-up cloth without a body, since the exported network has no repair, and its export. */
 async function prepare(ctsn, index) {
   const file = (ending) => path.join(folder, `${index}.${ending}`);
   await need(ctsn, ['bench', ...sizes[index].flags, '--write-model', file('safetensors')]);
-  const bytes = readFileSync(file('safetensors'));
-  const length = Number(bytes.readBigUInt64LE());
-  const header = Object.entries(JSON.parse(bytes.toString('utf8', 8, 8 + length)));
-  writeTensors(file('safetensors'), Object.fromEntries(header.filter(([name]) => !name.startsWith('body.'))), bytes.subarray(8 + length));
+  withoutBody(file('safetensors'), file('safetensors'));
   await need(ctsn, ['export', file('safetensors'), '-o', file('onnx')]);
 }
 

@@ -106,6 +106,8 @@ params! {
     Linear { rows: u32, inputs: u32, outputs: u32, relu: u32 }
     /// `Params` of normals.wgsl.
     Normals { vertices: u32 }
+    /// `Params` of polish.wgsl.
+    Polish { vertices: u32, rate: f32, momentum: f32 }
     /// `Params` of skin.wgsl.
     Skin { vertices: u32, width: u32, back: u32, world: u32 }
     /// `Params` of spread.wgsl.
@@ -154,6 +156,8 @@ shaders! {
     LINEAR_ROW: Linear, "linear.row" + [], [Read Read Read Write], [8, 1];
     /// Positions, offsets, corners -> normals.
     NORMALS: Normals, "normals" + [], [Read Read Read Write], [64, 1];
+    /// Offsets, neighbours, squares, share, current -> other.
+    POLISH: Polish, "polish" + [], [Read Read Read Read Read Write], [64, 1];
     /// Exposed body, its normals, offsets, fans, seeds, displacement -> positions.
     SETTLE: Collide, "settle" + ["collide.foot", "collide.walk", "collide.triangle"], [Read Read Read Read Read Read Write], [64, 1];
     /// Rest, joints, weights, transforms -> positions.

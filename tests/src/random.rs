@@ -1,7 +1,7 @@
 //! Models of awkward sizes with random weights, and random poses for them.
 
 use ctsn_core::cpu::network::body_frame::rig;
-use ctsn_core::model::{HostModel, Layer, Linear, Reference, Sizes, Skinning, Surface};
+use ctsn_core::model::{Cut, HostModel, Layer, Linear, Reference, Sizes, Skinning, Surface};
 use ctsn_core::suite::{numbers, transform, triangles};
 use ctsn_core::topology::Graph;
 use fastrand::Rng;
@@ -61,11 +61,12 @@ pub fn model(rng: &mut Rng, shape: Shape) -> HostModel {
         norm_bias: numbers(rng, features, 0.3),
     };
     let triangles = triangles(rng, n);
+    let graph = Graph::new(n, &triangles);
     let drawn: Vec<u32> = (0..n + n / 3).map(|_| rng.u32(..n as u32)).collect();
     HostModel {
         sizes: Sizes { vertices: n, joints, embedding, basis, features, heads },
         rig: Arc::new(rig(rng, joints, true)),
-        graph: Graph::new(n, &triangles),
+        graph: graph.clone(),
         triangles,
         rest: numbers(rng, n * 3, 1.0),
         skinning: skinning(rng, n, joints, 3),
@@ -83,6 +84,7 @@ pub fn model(rng: &mut Rng, shape: Shape) -> HostModel {
         mesh_basis: numbers(rng, n * 3 * basis, 0.1),
         mesh_stream: true,
         surface: Some(Surface { uv: vec![0.0; 2 * drawn.len()], vertex: drawn, triangles: Vec::new() }),
+        cut: Some(Cut::new(numbers(rng, n * 3, 1.0), &graph, 4).expect("no two vertices at one place")),
         body: None,
         training: None,
     }

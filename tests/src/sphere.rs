@@ -33,7 +33,7 @@ pub fn model(rng: &mut Rng, places: Vec<f32>, positions: Vec<f32>, triangles: Ve
     let mut model = random::model(rng, shape);
     (model.rest, model.skinning, model.triangles) = (places, follow(n), Vec::new());
     (model.skeleton_basis, model.mesh_basis, model.surface) = (vec![0.0; 3 * n], vec![0.0; 3 * n], None);
-    model.graph = Graph::new(n, &[]);
+    (model.graph, model.cut) = (Graph::new(n, &[]), None);
     Arc::make_mut(&mut model.rig).inverse_bind = vec![[1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0]];
     let vertices = positions.len() / 3;
     let seeds = (0..4 * n).map(|_| rng.u32(..vertices as u32)).collect();

@@ -2,7 +2,7 @@
 //! that no other thread of this binary allocates for its own reasons.
 #![cfg(not(target_arch = "wasm32"))]
 
-use ctsn_core::cpu::Level;
+use ctsn_core::cpu::{Level, Threads};
 use ctsn_core::file::Tensors;
 use ctsn_core::model::HostModel;
 use ctsn_core::{Folds, Predictor, Shares, Streams};
@@ -10,17 +10,22 @@ use ctsn_tests::random::column_major;
 use ctsn_tests::{golden, sphere};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 thread_local! {
     /// Calls for memory by this thread.
     static CALLS: Cell<usize> = const { Cell::new(0) };
 }
 
+/// Calls for memory by all threads.
+static ALL_CALLS: AtomicUsize = AtomicUsize::new(0);
+
 /// The system's allocator, counted.
 struct Counting;
 
 fn count() {
     CALLS.with(|calls| calls.set(calls.get() + 1));
+    ALL_CALLS.fetch_add(1, Ordering::Relaxed);
 }
 
 // SAFETY: every call goes to the system's allocator unchanged; counting touches a cell that needs no memory.
@@ -87,4 +92,21 @@ fn prediction_allocates_once() {
         });
         assert_eq!(found, 0, "{level:?}: calls for memory in frames of held folds");
     }
+    threads_allocate_a_block_now_and_then(&poses);
+}
+
+/// Beside the first frames: the queue through which rayon is asked is a chain of blocks of 63 requests.
+fn threads_allocate_a_block_now_and_then(poses: &[f32]) {
+    let mut model = HostModel::parse(golden::ALL[1].model).expect("golden model");
+    model.body = Some(sphere::body(model.sizes.vertices));
+    let pose = &poses[..12 * model.sizes.joints];
+    let mut predictor = Predictor::on_threads(model, Level::new(), Threads::new(3).expect("threads"));
+    let mut predict = |frames: usize| {
+        (0..frames).for_each(|_| predictor.predict_row_major(pose, Streams::Both).expect("a golden pose"));
+    };
+    predict(200);
+    let before = ALL_CALLS.load(Ordering::Relaxed);
+    predict(630);
+    let found = ALL_CALLS.load(Ordering::Relaxed) - before;
+    assert!(found <= 11, "{found} calls for memory in 630 frames on three threads");
 }

@@ -8,6 +8,12 @@ export { startGpuModule };
 
 const adopted = new WeakMap<GPUDevice, Promise<Gpu>>();
 
+/** What of a model's options its GPU side reads. */
+interface OpenOptions {
+  polish?: number | undefined;
+  gpuWasm?: WasmSource | undefined;
+}
+
 /** The weights of a model on a device, and what was allocated for its cloths. */
 export class GpuSide {
   readonly device: GPUDevice;
@@ -21,10 +27,10 @@ export class GpuSide {
   }
 
   /** Uploads the weights of a model file [bytes]. The first call of a page also starts WebGPU's module. */
-  static async open(file: Uint8Array, device: GPUDevice, wasm?: WasmSource): Promise<GpuSide> {
-    await startGpuModule(wasm);
+  static async open(file: Uint8Array, device: GPUDevice, { polish, gpuWasm }: OpenOptions): Promise<GpuSide> {
+    await startGpuModule(gpuWasm);
     try {
-      return new GpuSide(device, await GpuModel.load(await adopt(device), file));
+      return new GpuSide(device, await GpuModel.load(await adopt(device), file, polish));
     } catch (cause) {
       throw fromCore(cause);
     }

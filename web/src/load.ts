@@ -12,6 +12,11 @@ export interface LoadOptions extends DownloadOptions {
   wasm?: WasmSource | undefined;
   /** Likewise WebGPU's module, which is loaded when a model first computes on a GPU, and never before. */
   gpuWasm?: WasmSource | undefined;
+  /**
+   * Steps of the polish, which brings out the folds after each prediction: 0 (none) to 256, the next even number of
+   * them. The model file's own number (16, as `ctsn train` writes) if not given; no effect on a model without one.
+   */
+  polish?: number | undefined;
 }
 
 /** How to load a model that may compute on the GPU. */
@@ -38,11 +43,12 @@ export async function loadModel(
   source: ModelSource,
   options: LoadOptions & { backend?: BackendChoice | undefined; device?: GPUDevice | undefined } = {},
 ): Promise<ClothModel> {
+  checkSteps(options.polish);
   if (options.backend === 'auto' || options.backend === 'webgpu') prepare(options.device, options.gpuWasm);
   const [{ memory }, file] = await Promise.all([startModule(options.wasm), read(source, options)]);
   const openSide: Opener = async (device) =>
-    (await import('./gpu-side.js')).GpuSide.open(file, device, options.gpuWasm);
-  const model = new ClothModel(readModel(file), memory, openSide);
+    (await import('./gpu-side.js')).GpuSide.open(file, device, options);
+  const model = new ClothModel(readModel(file, options.polish), memory, openSide);
   try {
     await model.setBackend(options.backend ?? 'cpu', options.device);
   } catch (error) {
@@ -62,6 +68,11 @@ function prepare(device: GPUDevice | undefined, wasm: WasmSource | undefined): v
     await (await import('./gpu-side.js')).startGpuModule(wasm);
   };
   start().catch(() => undefined);
+}
+
+function checkSteps(polish: number | undefined): void {
+  if (polish === undefined || (Number.isInteger(polish) && polish >= 0 && polish <= 256)) return;
+  throw new CtsnError('argument', `polish: wanted a whole number of steps from 0 to 256, found ${String(polish)}`);
 }
 
 /** A model file: its address, or its bytes. */

@@ -14,10 +14,10 @@ const beside = () => new URL('./glue/ctsn_bg.wasm', import.meta.url);
 /** Compiles and starts the processor's module, once per page, from the first call's source. */
 export const startModule = /* @__PURE__ */ starter(initialiseGlue, beside);
 
-/** Reads a model file [bytes] in the started module. */
-export function readModel(bytes: Uint8Array): Predictor {
+/** Reads a model file [bytes] in the started module; `polish`: steps, if not the file's own number. */
+export function readModel(bytes: Uint8Array, polish?: number): Predictor {
   try {
-    return new Predictor(bytes);
+    return new Predictor(bytes, polish);
   } catch (cause) {
     throw fromCore(cause);
   }

@@ -1,6 +1,9 @@
+import { readFileSync } from 'node:fs';
+import { fileURLToPath } from 'node:url';
+import { Matrix4 } from 'three';
 import { expect, expectTypeOf, test } from 'vitest';
 import { loadModel, type ClothBuffers, type Frame, type Quality } from 'ctsn';
-import { difference } from '../../tests/browser/safetensors.js';
+import { difference, readTensors, toColumns } from '../../tests/browser/safetensors.js';
 import { bytesOf, loadConfident, loadGolden, readGolden } from './golden.js';
 
 test.each(['tiny', 'small', 'small_f16', 'isolated'])('golden model %s, through the public API', async (name) => {
@@ -37,6 +40,34 @@ test('the qualities differ: full, coarse, skinned', async () => {
   expect(difference(coarse, skinned)).toBeGreaterThan(0.01);
   expect(model.predictCloth(poses[0]!).positions).toEqual(full);
   model.dispose();
+});
+
+test('polish brings edges to the lengths they were cut to, by as many steps as a page asks for', async () => {
+  const path = fileURLToPath(new URL('../../www/public/tshirt.safetensors', import.meta.url));
+  const [bytes, cut] = [readFileSync(path), readTensors(path).tensors['cloth.cut']!.values];
+  const strain = async (polish?: number) => {
+    const model = await loadModel(bytes, { polish });
+    // The joints where they were bound.
+    const pose = toColumns(Float32Array.from(model.inverseBind));
+    for (let i = 0; i < pose.length; i += 16) new Matrix4().fromArray(pose, i).invert().toArray(pose, i);
+    const { positions } = model.predictCloth(pose);
+    const lengths = (of: ArrayLike<number>) =>
+      Array.from(model.triangles, (a, corner) => {
+        const b = model.triangles[corner - (corner % 3) + ((corner + 1) % 3)]!;
+        return Math.hypot(...[0, 1, 2].map((c) => of[3 * a + c]! - of[3 * b + c]!));
+      });
+    const [found, wanted] = [lengths(positions), lengths(cut)];
+    model.dispose();
+    return found.reduce((sum, length, i) => sum + Math.abs(length / wanted[i]! - 1), 0) / found.length;
+  };
+  const [none, few, own, sixteen, odd] = [await strain(0), await strain(4), await strain(), await strain(16), await strain(3)];
+  expect(few).toBeLessThan(0.9 * none);
+  expect(own).toBeLessThan(0.9 * few);
+  expect(own).toBe(sixteen);
+  expect(odd).toBe(few);
+  for (const polish of [-1, 1.5, 257, NaN, '8' as unknown as number]) {
+    await expect(loadModel(bytes, { polish })).rejects.toThrow(/polish: wanted a whole number .* found/);
+  }
 });
 
 test('confidence falls where a pose leaves what the model has seen', async () => {

@@ -138,6 +138,24 @@ operations! { $
         output: W,
     }
 
+    /// One step in which each edge pulls its ends towards the length it was cut to. network.md §5.
+    Polish<R, W, I> {
+        /// Where the neighbours of each vertex start [n + 1].
+        offsets: I,
+        /// Neighbours [edges].
+        neighbours: I,
+        /// Squared length that each edge was cut to, square metres [edges].
+        squares: R,
+        /// What the step counts in this prediction, 0 to 1 [1].
+        share: R,
+        /// Whether it is the first step, which has no momentum.
+        first: bool,
+        /// x [n, 3].
+        current: R,
+        /// Before the last step [n, 3]; after this one.
+        other: W,
+    }
+
     /// Area-weighted unit vertex normals; +Y where a vertex has no area around it.
     Normals<R, W, I> {
         /// [n, 3].
@@ -247,6 +265,8 @@ impl Operation<usize, usize, usize> {
                 // The gate: difference, three dot products, blend; LayerNorm: mean, variance, scale and shift.
                 attention + it.output * (1 + 6 + 2 + 7)
             }
+            // An edge: difference, square, pull, sum; a vertex: its mean and momentum.
+            Self::Polish(it) => 18 * it.neighbours + 4 * it.current,
             Self::Normals(it) => 18 * it.triangles + 3 * it.positions,
             Self::Surface(_) => 0,
             Self::Bury(it) => buriable(it.areas).len() * it.areas * 18,

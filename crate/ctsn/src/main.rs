@@ -9,7 +9,8 @@ mod pictures;
 
 use clap::{Parser, Subcommand};
 use commands::{
-    bake, bench, character, evaluate, export, garment, inspect, motion, predict, render, sheet, simulate, study, train,
+    bake, bench, character, evaluate, export, garment, inspect, motion, polish, predict, render, sheet, simulate,
+    study, train,
 };
 
 /// Learned cloth for any skinned character.
@@ -29,6 +30,7 @@ use commands::{
 ///   ctsn evaluate model.safetensors data              errors on the rest
 ///   ctsn study data -o study                          plain skinning, older methods, ablations and sizes beside it
 ///   ctsn render model.safetensors character.glb --clip NAME --frame N -o picture.png
+///   ctsn polish model.safetensors data -o model.safetensors    its folds, crisper or calmer
 ///   ctsn export model.safetensors -o model.onnx       the network for Unity, Unreal and other runtimes
 #[derive(Parser)]
 #[command(name = "ctsn", version, verbatim_doc_comment)]
@@ -50,6 +52,7 @@ enum Command {
     Render(render::Arguments),
     Sheet(sheet::Arguments),
     Inspect(inspect::Arguments),
+    Polish(polish::Arguments),
     Predict(predict::Arguments),
     Export(export::Arguments),
     Bench(bench::Arguments),
@@ -81,6 +84,7 @@ fn main() -> std::process::ExitCode {
         Command::Render(arguments) => render::run(&arguments),
         Command::Sheet(arguments) => sheet::run(&arguments),
         Command::Inspect(arguments) => inspect::run(&arguments),
+        Command::Polish(arguments) => polish::run(&arguments),
         Command::Predict(arguments) => predict::run(&arguments),
         Command::Export(arguments) => export::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),

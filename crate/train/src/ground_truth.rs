@@ -11,10 +11,14 @@ mod tests;
 mod timing;
 
 use crate::dataset::{Record, Sample, Setup, Split, mixed_path, pose_path, twin_path};
+use crate::judging::check_same;
 use crate::{Error, Result};
 use ctsn_cloth::simulate::Simulator;
+use ctsn_core::cpu::Level;
+use ctsn_core::model::HostModel;
+use ctsn_core::{Predictor, Streams};
 use ctsn_rig::mixed::{has_limbs, mixed};
-use ctsn_rig::path::is_sound;
+use ctsn_rig::path::{body_frame, is_sound};
 use ctsn_rig::{Character, Pose, joints, numbers, vertices};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -72,9 +76,12 @@ impl<'a> Run<'a> {
             );
             return Err(Error::Simulation(reason));
         }
+        let mut wanted = request.setup();
+        if let Some(teacher) = request.teacher {
+            check_same(teacher, &wanted)?;
+        }
         let settings = request.settings.clone();
         let simulator = Simulator::new(request.character, request.garment, request.material.1, settings)?;
-        let mut wanted = request.setup();
         let setup = match Setup::read(folder)? {
             Some(found) => {
                 found.check_same(&wanted, folder)?;
@@ -111,7 +118,14 @@ impl<'a> Run<'a> {
                 Kind::Twin => noise::turned(character, frame(), task.clip, task.frame),
                 Kind::Mixed => mixed(character, &learned, task.frame),
             };
-            let outcome = self.simulator.simulate(&self.template, &pose);
+            let outcome = match self.request.teacher {
+                None => self.simulator.simulate(&self.template, &pose),
+                Some(teacher) => match predicted(teacher, character, &pose) {
+                    Ok(start) => self.simulator.relax(&self.template, &pose, &start),
+                    // Far outside of what it has seen a model may overflow; the simulator says so of its pose.
+                    Err(_) => self.simulator.relax(&self.template, &pose, &[]),
+                },
+            };
             let record = Record::new(task.clip, task.frame, &outcome);
             let sample = Sample { record, joints: joints(&pose), truth: numbers(&outcome.positions) };
             sample.write(&task.path)?;
@@ -121,6 +135,14 @@ impl<'a> Run<'a> {
         };
         self.tasks.par_iter().with_max_len(1).try_for_each(run)
     }
+}
+
+/// What `model` predicts for `pose`, body frame [n].
+fn predicted(model: &HostModel, character: &Character, pose: &Pose) -> Result<Vec<DVec3>> {
+    let mut predictor = Predictor::from_model(model.clone(), Level::new());
+    predictor.predict_row_major(&joints(pose), Streams::Both)?;
+    let into = body_frame(character, pose);
+    Ok(vertices(predictor.positions()).into_iter().map(|position| into.transform_point3(position)).collect())
 }
 
 /// The frames to train on. Mixed poses are made of these alone, so that unseen frames stay unseen.

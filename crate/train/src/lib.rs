@@ -9,6 +9,7 @@ pub mod judging;
 pub mod loss;
 pub mod methods;
 pub mod report;
+mod smoother;
 pub mod synthetic;
 pub mod training;
 

@@ -52,10 +52,10 @@ pub struct GpuModel(ctsn_gpu::Model);
 
 #[wasm_bindgen]
 impl GpuModel {
-    /// Reads a model file and uploads its weights.
+    /// Reads a model file and uploads its weights; `polish`: steps of the polish, if not the file's own number.
     #[wasm_bindgen(unchecked_return_type = "Promise<GpuModel>")]
-    pub fn load(gpu: &Gpu, bytes: &[u8]) -> Promise {
-        let (gpu, model) = (gpu.0.clone(), HostModel::parse(bytes));
+    pub fn load(gpu: &Gpu, bytes: &[u8], polish: Option<usize>) -> Promise {
+        let (gpu, model) = (gpu.0.clone(), HostModel::parse(bytes).map(|model| model.polish(polish)));
         promise(async move { ctsn_gpu::Model::new(&gpu, &model?).await.map(Self) })
     }
 

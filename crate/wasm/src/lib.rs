@@ -3,6 +3,8 @@
 // On other targets there is no JavaScript.
 #![cfg(target_arch = "wasm32")]
 
+use ctsn_core::cpu::Level;
+use ctsn_core::model::HostModel;
 use ctsn_core::{Error, Shares};
 use wasm_bindgen::prelude::*;
 
@@ -55,13 +57,14 @@ pub struct Predictor {
 
 #[wasm_bindgen]
 impl Predictor {
-    /// Reads a model file.
+    /// Reads a model file; `polish`: steps of the polish, if not the file's own number.
     ///
     /// # Errors
     /// A JavaScript `Error` whose `name` is the code of what is wrong with the file.
     #[wasm_bindgen(constructor)]
-    pub fn new(bytes: Vec<u8>) -> Result<Predictor, js_sys::Error> {
-        let inner = ctsn_core::Predictor::new(&bytes).map_err(|error| to_js(&error))?;
+    pub fn new(bytes: Vec<u8>, polish: Option<usize>) -> Result<Predictor, js_sys::Error> {
+        let model = HostModel::parse(&bytes).map_err(|error| to_js(&error))?;
+        let inner = ctsn_core::Predictor::from_model(model.polish(polish), Level::new());
         let pose = vec![0.0; inner.joints().len() * 16];
         Ok(Self { inner, pose, failure: None })
     }

@@ -23,6 +23,8 @@ mod proximity;
 mod settings;
 mod simulator;
 mod transport;
+mod untangle;
+mod way;
 
 #[cfg(test)]
 mod tests;

@@ -3,7 +3,7 @@
 
 use glam::{DAffine3, DVec3};
 
-use super::coarse::{Coarse, part};
+use super::coarse::Coarse;
 use super::collider::Collider;
 use super::cover::{Cover, SLACK};
 use super::distance::BodyDistance;
@@ -13,33 +13,29 @@ use super::material::Material;
 use super::newton::{Probe, Solver};
 use super::outcome::{Outcome, Status, stretch};
 use super::outer_skin::{outer_skin, smooth};
-use super::posed::PosedBody;
 use super::settings::Settings;
-use super::transport::transport;
+use super::untangle::untangle;
 use crate::wrap::SKIN;
 use crate::{Error, Result};
-use ctsn_rig::path::{body_frame, is_sound, motion, path, to_body_frame};
+use ctsn_rig::path::{body_frame, is_sound, to_body_frame};
 use ctsn_rig::{Character, Garment, Mesh, Pose, Surface};
 
 /// How far from where the body passes into itself cloth is pinched by it, metres.
 const PINCH: f64 = 0.025;
 
-/// Newton iterations of the coarse garment at the end of its path.
-const COARSE_ITERATIONS: usize = 100;
-
 /// Simulates one garment on one character. Built once, used from any number of threads.
 pub struct Simulator {
-    character: Character,
+    pub(super) character: Character,
     rest: Vec<DVec3>,
     pub(super) level: Level,
     /// What a fine garment travels as.
     coarse: Option<(Coarse, Level)>,
     /// The body's outer skin, which the cloth touches.
-    collider: Collider,
+    pub(super) collider: Collider,
     /// The body itself, which no kept pose may enter.
-    body: BodyDistance,
-    cover: Cover,
-    settings: Settings,
+    pub(super) body: BodyDistance,
+    pub(super) cover: Cover,
+    pub(super) settings: Settings,
 }
 
 impl Simulator {
@@ -94,13 +90,8 @@ impl Simulator {
 
     /// Simulates `pose` from `template` (canonical space, as [`drape`](Self::drape) returns it).
     pub fn simulate(&self, template: &[DVec3], pose: &Pose) -> Outcome {
-        if template.len() != self.rest.len() || template.iter().any(|p| !p.is_finite()) {
-            let wanted = self.rest.len();
-            return self.refuse(format!("template: wanted {wanted} finite vertices, found {}", template.len()));
-        }
-        if !is_sound(&self.character, pose) {
-            let (wanted, found) = (self.character.joints.len(), pose.len());
-            return self.refuse(format!("pose: wanted {wanted} finite, invertible joints, found {found}"));
+        if let Err(reason) = self.check(template, pose) {
+            return self.refuse(reason);
         }
         let way = self.way(pose);
         let through = self.coarse.as_ref().and_then(|coarse| self.through(coarse, template, &way));
@@ -112,54 +103,38 @@ impl Simulator {
         self.outcome(solver, relaxed, pose, DAffine3::IDENTITY)
     }
 
-    /// The path to a pose.
-    fn way(&self, pose: &Pose) -> Way {
-        let poses = path(&self.character, pose, self.settings.path_steps);
-        let end = self.character.skinning(&poses[self.settings.path_steps]);
-        let heights = self.cover.heights(&self.body.posed(pose), &self.collider, &end);
-        Way { poses, heights }
-    }
-
-    /// Carries a garment along the path, `template` its own.
-    fn travel<'a>(&'a self, level: &'a Level, template: &[DVec3], way: &Way) -> (Solver<'a>, PosedBody<'a>) {
-        let start = body_frame(&self.character, &self.character.canonical_pose());
-        let positions = template.iter().map(|p| start.transform_point3(*p)).collect();
-        let mut solver = level.solver(&self.settings, positions);
-        let mut body = self.collider.pose(&self.character.skinning(&way.poses[0]));
-        for (step, pair) in way.poses.windows(2).enumerate() {
-            transport(&mut solver, &body, &motion(&pair[0], &pair[1]), &level.rings);
-            let skinning = self.character.skinning(&pair[1]);
-            let share = (step + 1) as f64 / self.settings.path_steps as f64;
-            body = self.collider.raised(&skinning, &way.heights, share);
-            level.pin(&mut solver, template, &skinning);
-            let mut share = 0.0;
-            // Cloth that is held up by cloth gets more iterations.
-            for iteration in 0..3 * self.settings.path_iterations {
-                if iteration >= self.settings.path_iterations && share > 0.3 {
-                    break;
-                }
-                solver.probe(Some(&body), self.settings.path_time_step);
-                share = solver.advance(self.settings.path_time_step);
-            }
+    /// Relaxes `pose` from `start` (body frame [n]), which may cross itself and the body a little. The equilibrium is
+    /// as true as that which [`simulate`](Self::simulate) comes to, but of all there are the one nearest to the start.
+    pub fn relax(&self, template: &[DVec3], pose: &Pose, start: &[DVec3]) -> Outcome {
+        if let Err(reason) = self.check(template, pose).and_then(|()| self.check_cloth("start", start)) {
+            return self.refuse(reason);
         }
-        (solver, body)
+        let mut positions = start.to_vec();
+        untangle(&self.level.cloth.elements, &self.level.rings, &mut positions);
+        let mut solver = self.level.solver(&self.settings, positions);
+        let end = self.character.skinning(&to_body_frame(&self.character, pose));
+        let heights = self.cover.heights(&self.body.posed(pose), &self.collider, &end);
+        let body = self.collider.raised(&end, &heights, 1.0);
+        self.level.pin(&mut solver, template, &end);
+        let relaxed = solver.relax(Some(&body), self.settings.relax_iterations);
+        self.outcome(solver, relaxed, pose, DAffine3::IDENTITY)
     }
 
-    /// The fine garment laid on the coarse one at the end of its path; none where it would cross itself.
-    fn through<'a>(
-        &'a self,
-        (coarse, level): &'a (Coarse, Level),
-        template: &[DVec3],
-        way: &Way,
-    ) -> Option<(Solver<'a>, PosedBody<'a>)> {
-        let (mut travelled, body) = self.travel(level, &coarse.restrict(template), way);
-        travelled.relax(Some(&body), COARSE_ITERATIONS);
-        let laid = coarse.prolong(template, &travelled.positions);
-        let laid = part(&self.level.cloth.elements, &self.level.rings, laid)?;
-        let mut solver = self.level.solver(&self.settings, laid);
-        solver.iterations = travelled.iterations;
-        self.level.pin(&mut solver, template, &self.character.skinning(&way.poses[self.settings.path_steps]));
-        Some((solver, body))
+    /// Why this cannot be simulated.
+    fn check(&self, template: &[DVec3], pose: &Pose) -> std::result::Result<(), String> {
+        self.check_cloth("template", template)?;
+        if is_sound(&self.character, pose) {
+            return Ok(());
+        }
+        let (wanted, found) = (self.character.joints.len(), pose.len());
+        Err(format!("pose: wanted {wanted} finite, invertible joints, found {found}"))
+    }
+
+    fn check_cloth(&self, name: &str, cloth: &[DVec3]) -> std::result::Result<(), String> {
+        if cloth.len() == self.rest.len() && cloth.iter().all(|p| p.is_finite()) {
+            return Ok(());
+        }
+        Err(format!("{name}: wanted {} finite vertices, found {}", self.rest.len(), cloth.len()))
     }
 
     fn judge(&self, outcome: &Outcome, inside: Inside) -> Status {
@@ -260,12 +235,6 @@ impl Simulator {
             status: Status::Rejected { reason },
         }
     }
-}
-
-/// The poses from the canonical one to the wanted one, and how far the body's skin is raised at the end, metres.
-struct Way {
-    poses: Vec<Pose>,
-    heights: Vec<f64>,
 }
 
 /// Vertices inside the body.

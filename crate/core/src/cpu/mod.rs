@@ -2,6 +2,7 @@
 //! The same source serves AVX2, NEON, wasm simd128 and the scalar level, which is the reference.
 
 pub mod limits;
+mod threads;
 pub mod vector;
 
 /// The paper's network.
@@ -12,8 +13,10 @@ pub mod network {
     pub mod exp;
     pub mod features;
     pub mod gate;
+    pub mod heads;
     pub mod linear;
     pub mod normals;
+    pub mod polish;
     pub mod skin;
     pub mod surface;
 }
@@ -24,6 +27,7 @@ pub mod repair {
     pub mod closest;
     pub mod collide;
     pub mod eight;
+    pub mod rings;
     pub mod settle;
     pub mod spread;
 }
@@ -31,15 +35,26 @@ pub mod repair {
 use crate::device::Device;
 use crate::operation::Operation;
 pub use fearless_simd::Level;
+pub use threads::Threads;
 
-/// The CPU: level of SIMD and scratch space that grows to its final size in the first frame.
+/// The CPU: level of SIMD, threads, and scratch space that grows to its final size in the first frame.
 pub struct Cpu {
     level: Level,
-    linear: network::linear::Scratch,
-    /// Of attention, for one vertex [C, edges].
-    scores: Vec<f32>,
-    rings: repair::closest::Rings,
+    threads: Threads,
+    /// Of a product, for all threads: weights and bias.
+    panels: Vec<f32>,
+    /// One for each thread.
+    scratch: Vec<Scratch>,
+    rings: repair::rings::Rings,
     dipoles: repair::bury::Dipoles,
+}
+
+/// Room of one thread.
+#[derive(Default)]
+struct Scratch {
+    /// Of a product: a block of its inputs.
+    tiles: Vec<f32>,
+    attend: network::attend::Scratch,
 }
 
 /// An operation on slices: what each file of `network` and `repair` named as an operation implements.
@@ -55,8 +70,19 @@ impl Cpu {
 
     /// A chosen level.
     pub fn with_level(level: Level) -> Self {
-        let (linear, scores, rings, dipoles) = Default::default();
-        Self { level, linear, scores, rings, dipoles }
+        Self::with_threads(level, Threads::default())
+    }
+
+    /// A chosen level on chosen threads.
+    pub fn with_threads(level: Level, threads: Threads) -> Self {
+        let (panels, rings, dipoles) = Default::default();
+        let scratch = (0..threads.count()).map(|_| Scratch::default()).collect();
+        Self { level, threads, panels, scratch, rings, dipoles }
+    }
+
+    /// The threads that operations are shared out over.
+    pub fn threads(&self) -> &Threads {
+        &self.threads
     }
 
     /// Runs an operation on slices.

@@ -2,12 +2,14 @@
 //! The files of this folder are the only place that knows tensor names and shapes.
 
 mod body;
+mod cut;
 mod read;
 mod write;
 
 use crate::pose::Rig;
 use crate::topology::Graph;
 pub use body::{Body, Fans, areas};
+pub use cut::{Cut, MOST_STEPS, STEPS};
 use std::sync::Arc;
 pub use write::Storage;
 
@@ -139,6 +141,8 @@ pub struct Model<B, I> {
     pub mesh_stream: bool,
     /// What is drawn, when it differs from the cloth mesh.
     pub surface: Option<Surface<I>>,
+    /// How the cloth was cut.
+    pub cut: Option<Cut<B>>,
     /// What the cloth is kept out of.
     pub body: Option<Body<B, I>>,
     /// What the model was trained on: a JSON object, free in form.
@@ -178,6 +182,14 @@ impl<B> Layer<B> {
 }
 
 impl<B, I> Model<B, I> {
+    /// Has the cloth polished by another number of steps, where the model knows how it was cut.
+    pub fn polish(mut self, steps: Option<usize>) -> Self {
+        if let (Some(cut), Some(steps)) = (&mut self.cut, steps) {
+            cut.steps = steps;
+        }
+        self
+    }
+
     /// The same model on other storage: `values` and `indices` move one array each, in a fixed order.
     pub fn map<'a, C, J>(
         &'a self,
@@ -210,6 +222,7 @@ impl<B, I> Model<B, I> {
                 uv: surface.uv.clone(),
                 triangles: surface.triangles.clone(),
             }),
+            cut: self.cut.as_ref().map(|cut| cut.map(values)),
             body: self.body.as_ref().map(|body| body.map(values, indices)),
             training: self.training.clone(),
         }

@@ -1,7 +1,7 @@
 //! Model file -> model, checking every name, shape and index. network.md §8.
 
-use super::{Body, HostModel, Layer, Linear, Model, Reference, Sizes, Skinning, Surface};
-use super::{CLOTH_WEIGHTS, MESH_BASIS, SKELETON_BASIS};
+use super::{Body, Cut, HostModel, Layer, Linear, Model, Reference, Sizes, Skinning, Surface};
+use super::{CLOTH_WEIGHTS, MESH_BASIS, SKELETON_BASIS, STEPS};
 use crate::error::{Decimal, Error, Result};
 use crate::file::Tensors;
 use crate::pose::{Frame, Range, Rig, Transform};
@@ -19,6 +19,8 @@ pub(super) struct Description {
     pub inverse_bind: Vec<Vec<f32>>,
     pub heads: usize,
     pub edge_scale: f32,
+    /// Steps of the polish; older files lack it.
+    pub polish: Option<u32>,
 }
 
 impl HostModel {
@@ -49,9 +51,12 @@ impl HostModel {
                 layers.len()
             )));
         }
+        let graph = Graph::new(n, &triangles);
+        let steps = description.polish.map_or(STEPS, |steps| steps as usize);
         Ok(Model {
             sizes: Sizes { vertices: n, joints, embedding: m, basis: k, features, heads },
-            graph: Graph::new(n, &triangles),
+            cut: Cut::read(&file, n, &graph, steps)?,
+            graph,
             triangles,
             rest,
             skinning: Skinning::from_dense(&dense, joints),

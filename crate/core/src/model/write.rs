@@ -55,6 +55,9 @@ impl HostModel {
         self.write_cloth(&mut writer);
         self.write_reference(&mut writer);
         self.write_network(&mut writer);
+        if let Some(cut) = &self.cut {
+            cut.write(&mut writer);
+        }
         if let Some(body) = &self.body {
             body.write(self.sizes.vertices, &mut writer);
         }
@@ -73,6 +76,7 @@ impl HostModel {
             inverse_bind: self.rig.inverse_bind.iter().map(|transform| transform.to_vec()).collect(),
             heads: self.sizes.heads,
             edge_scale: self.reference.edge_scale,
+            polish: self.cut.as_ref().map(|cut| cut.steps as u32),
         })
     }
 

@@ -3,6 +3,7 @@
 mod collide;
 mod embedding;
 mod graph;
+mod polish;
 
 use crate::device::Device;
 use crate::model::{HostModel, Model, Skinning};
@@ -11,6 +12,7 @@ pub use collide::{Collision, collide, expose, push};
 pub(crate) use embedding::skeleton;
 pub use graph::graph_layer;
 pub(crate) use graph::mesh;
+pub(crate) use polish::polish;
 use std::sync::Arc;
 
 /// Which part of the network runs.
@@ -61,6 +63,8 @@ pub struct Activations<B> {
     pub template: B,
     /// Predicted positions [n, 3].
     pub positions: B,
+    /// Every second state of the polish [n, 3], where the model has one.
+    pub polished: Option<B>,
     /// What the repair of penetration computes, where the model has a body.
     pub collision: Option<Collision<B>>,
     /// Unit normals of the predicted positions [n, 3].
@@ -113,6 +117,7 @@ impl<B> Activations<B> {
             coarse: buffer("skeleton", n * 3),
             template: buffer("template", n * 3),
             positions: buffer("positions", n * 3),
+            polished: model.cut.as_ref().map(|_| buffer("polish", n * 3)),
             collision: model.body.as_ref().map(|body| Collision::new(body.vertices, n, &mut buffer)),
             normals: buffer("normals", n * 3),
             drawn: model.surface.as_ref().filter(|surface| !surface.vertex.is_empty()).map(|surface| Drawn {
@@ -139,6 +144,9 @@ impl<B> Activations<B> {
 pub fn predict<D: Device>(device: &mut D, model: &DeviceModel<D>, streams: Streams, a: &mut Activations<D::Buffer>) {
     pose(device, model, a);
     forward(device, model, streams, Space::World, a);
+    if streams == Streams::Both {
+        polish(device, model, a);
+    }
     repair(device, model, streams, a);
     finish(device, model, a);
 }

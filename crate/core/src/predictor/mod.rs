@@ -3,9 +3,9 @@
 mod folds;
 
 use crate::confidence::Confidence;
-use crate::cpu::{Cpu, Level};
+use crate::cpu::{Cpu, Level, Threads};
 use crate::model::{HostModel, Sizes, Surface};
-use crate::network::{Activations, Streams, finish, forward, mesh, pose, repair, skeleton, skin};
+use crate::network::{Activations, Streams, finish, forward, mesh, polish, pose, repair, skeleton, skin};
 use crate::operation::Space;
 use crate::pose::{Rig, Transform};
 use crate::{Error, Result};
@@ -43,7 +43,12 @@ impl Predictor {
 
     /// A model at a chosen SIMD level.
     pub fn from_model(model: HostModel, level: Level) -> Self {
-        let device = Cpu::with_level(level);
+        Self::on_threads(model, level, Threads::default())
+    }
+
+    /// A model at a chosen SIMD level, on chosen threads; how many changes no number.
+    pub fn on_threads(model: HostModel, level: Level, threads: Threads) -> Self {
+        let device = Cpu::with_threads(level, threads);
         let activations = Activations::new(&model, |_, length| vec![0.0; length]);
         let trust = Confidence::new(&model);
         Self { device, model: Arc::new(model), activations, trust, confidence: 1.0 }
@@ -110,6 +115,11 @@ impl Predictor {
         shares: Shares,
     ) -> Result<()> {
         self.model.rig.read_column_major(joints, &mut self.activations.joints)?;
+        let threads = self.device.threads().clone();
+        threads.enter(|| self.run_folds(folds, (aim, step), shares))
+    }
+
+    fn run_folds(&mut self, folds: &mut Folds, (aim, step): (bool, f32), shares: Shares) -> Result<()> {
         self.weigh(shares);
         let (device, model, a) = (&mut self.device, &*self.model, &mut self.activations);
         pose(device, model, a);
@@ -130,6 +140,11 @@ impl Predictor {
     }
 
     fn run(&mut self, streams: Streams, shares: Shares) -> Result<()> {
+        let threads = self.device.threads().clone();
+        threads.enter(|| self.run_here(streams, shares))
+    }
+
+    fn run_here(&mut self, streams: Streams, shares: Shares) -> Result<()> {
         self.weigh(shares);
         let (device, model, a) = (&mut self.device, &*self.model, &mut self.activations);
         pose(device, model, a);
@@ -141,6 +156,9 @@ impl Predictor {
     /// is checked, so that NaN never leaves.
     fn end(&mut self, streams: Streams, shares: Shares) -> Result<()> {
         let (device, model, a) = (&mut self.device, &*self.model, &mut self.activations);
+        if streams == Streams::Both {
+            polish(device, model, a);
+        }
         if shares.skeleton < 1.0 && streams != Streams::None {
             // The residuals alone would fade to the learned weights, which without them look ragged.
             let plain = &mut a.template;

@@ -5,7 +5,7 @@ mod stages;
 
 use super::Device;
 use anyhow::{Result, ensure};
-use ctsn_core::cpu::{Cpu, Level};
+use ctsn_core::cpu::{Cpu, Level, Threads};
 use ctsn_core::device::Device as _;
 use ctsn_core::model::{HostModel, Sizes, Storage};
 use ctsn_core::network::{Activations, collide, forward, skin};
@@ -38,6 +38,9 @@ pub struct Arguments {
     /// Device that computes
     #[arg(long, value_enum, default_value = "cpu")]
     device: Device,
+    /// Threads that compute on the CPU
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
+    threads: u16,
     /// Predictions timed
     #[arg(long, default_value_t = 200)]
     runs: usize,
@@ -45,7 +48,7 @@ pub struct Arguments {
     #[arg(long)]
     write_model: Option<PathBuf>,
     /// Time every operation by itself, beside what its flops and bytes take at the processor's limits
-    #[arg(long, conflicts_with_all = ["device", "train"])]
+    #[arg(long, conflicts_with_all = ["device", "threads", "train"])]
     stages: bool,
     /// Time training steps as well
     #[arg(long)]
@@ -73,7 +76,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         return stages::run(&model, &poses, runs);
     }
     match arguments.device {
-        Device::Cpu => cpu(&model, &poses, runs)?,
+        Device::Cpu => cpu(&model, &poses, runs, arguments.threads.into())?,
         Device::Gpu => gpu::run(&model, &poses, runs)?,
     }
     if arguments.train {
@@ -103,10 +106,11 @@ fn worn(model: &HostModel, sample: &Sample) -> Result<Sample> {
 }
 
 /// Predictions on the CPU, and the repair of penetration in them.
-fn cpu(model: &HostModel, poses: &[&[f32]], runs: usize) -> Result<()> {
+fn cpu(model: &HostModel, poses: &[&[f32]], runs: usize, threads: usize) -> Result<()> {
+    let threads = Threads::new(threads)?;
     let triangles = model.body.as_ref().map_or(0, |body| body.triangles.len() / 3);
     println!("with repair of penetration against a body of {triangles} triangles");
-    let mut timed = [Level::new(), Level::baseline()].map(|level| Timed::new(model, level));
+    let mut timed = [Level::new(), Level::baseline()].map(|level| Timed::new(model, level, &threads));
     // By turns, so that other work of the machine slows all of them alike.
     for run in 0..runs {
         for timed in &mut timed {
@@ -142,11 +146,17 @@ struct Timed {
 }
 
 impl Timed {
-    fn new(model: &HostModel, level: Level) -> Self {
+    fn new(model: &HostModel, level: Level, threads: &Threads) -> Self {
         let mut room = Activations::new(model, |_, length| vec![0.0; length]);
         (room.skeleton_share[0], room.mesh_share[0]) = (1.0, 1.0);
-        let predictor = Predictor::from_model(model.clone(), level);
-        Self { predictor, device: Cpu::with_level(level), room, whole: Vec::new(), repair: Vec::new() }
+        let predictor = Predictor::on_threads(model.clone(), level, threads.clone());
+        Self {
+            predictor,
+            device: Cpu::with_threads(level, threads.clone()),
+            room,
+            whole: Vec::new(),
+            repair: Vec::new(),
+        }
     }
 
     fn predict(&mut self, pose: &[f32]) -> Result<()> {

@@ -11,7 +11,7 @@ use std::path::PathBuf;
 /// Input  `joints`    [J, 3, 4] float32: world transforms of the joints, row-major, metres, in the order of
 ///                    `ctsn inspect MODEL` (the file's metadata has it, too: `joints`, a JSON list).
 /// Output `positions` [n, 3] float32: the cloth's vertices in the world, metres, as `ctsn predict` gives them
-///                    before its repair of penetration, which is not part of the network.
+///                    before its polish and its repair of penetration, which are not part of the network.
 ///
 /// Opset 15. Triangles and texture coordinates stay in the model file. docs/export.md tells how to feed it.
 #[derive(clap::Args)]

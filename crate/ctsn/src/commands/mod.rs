@@ -8,6 +8,7 @@ pub mod export;
 pub mod garment;
 pub mod inspect;
 pub mod motion;
+pub mod polish;
 pub mod predict;
 pub mod render;
 pub mod sheet;

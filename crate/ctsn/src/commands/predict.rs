@@ -2,7 +2,7 @@
 
 use super::{Device, model, one_of};
 use anyhow::{Context, Result};
-use ctsn_core::cpu::Level;
+use ctsn_core::cpu::{Level, Threads};
 use ctsn_core::file::{Tensor, Tensors};
 use ctsn_core::model::HostModel;
 use ctsn_core::{Predictor, Streams};
@@ -30,6 +30,9 @@ pub struct Arguments {
     /// Device that computes
     #[arg(long, value_enum, default_value = "cpu")]
     device: Device,
+    /// Threads that compute on the CPU
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
+    threads: u16,
     /// Streams of the network to run
     #[arg(long, value_parser = one_of(STREAMS), default_value = "both")]
     streams: Streams,
@@ -69,7 +72,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let (poses, shape) = poses.f32("pose.joints", &shape).with_context(|| arguments.poses.display().to_string())?;
     let poses = poses.chunks_exact(12 * joints);
     let predicted = match arguments.device {
-        Device::Cpu => cpu(model, poses, arguments.streams)?,
+        Device::Cpu => cpu(model, poses, arguments)?,
         Device::Gpu => gpu(&model, poses, arguments.streams)?,
     };
     let mut out = Tensors::default();
@@ -94,11 +97,12 @@ fn tell_times(start: Instant, done: &[Instant]) {
 }
 
 /// Positions and normals of every pose.
-fn cpu<'a>(model: HostModel, poses: impl Iterator<Item = &'a [f32]>, streams: Streams) -> Result<Predicted> {
-    let mut predictor = Predictor::from_model(model, Level::new());
+fn cpu<'a>(model: HostModel, poses: impl Iterator<Item = &'a [f32]>, arguments: &Arguments) -> Result<Predicted> {
+    let threads = Threads::new(arguments.threads.into())?;
+    let mut predictor = Predictor::on_threads(model, Level::new(), threads);
     let mut predicted = Predicted::new();
     for pose in poses {
-        predictor.predict_row_major(pose, streams)?;
+        predictor.predict_row_major(pose, arguments.streams)?;
         predicted.push(predictor.positions(), predictor.normals());
     }
     Ok(predicted)

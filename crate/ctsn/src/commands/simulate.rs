@@ -1,6 +1,6 @@
 //! `ctsn simulate`: the truth to learn from.
 
-use super::{bar, file_name, remaining};
+use super::{bar, file_name, model, remaining};
 use anyhow::{Result, bail};
 use ctsn_cloth::garment;
 use ctsn_cloth::simulate::{Material, Settings};
@@ -60,6 +60,10 @@ pub struct Options {
     /// Simulate this many poses a second time, every joint turned by half a degree, to measure the noise of the truth
     #[arg(long, value_name = "K", default_value_t = 0)]
     pub noise_floor: usize,
+    /// Relax every pose from what this model of the same garment predicts, not along a path from the canonical drape:
+    /// faster, and of all the ways in which cloth may fold, one that a network can learn
+    #[arg(long, value_name = "MODEL")]
+    pub from: Option<PathBuf>,
     /// Keep poses with at most this share of the vertices inside the body where it passes into itself (an upper arm
     /// into the chest, say): no place is outside there. With 0, few poses are kept of wide motion on slim limbs
     #[arg(long, value_name = "SHARE", default_value_t = 0.03)]
@@ -72,6 +76,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let character = character(&arguments.character, options)?;
     let (garment, warnings) = garment::load(&arguments.garment, &character)?;
     warnings.iter().for_each(|warning| eprintln!("  {}: {warning}", arguments.garment.display()));
+    let teacher = options.from.as_deref().map(model).transpose()?;
     let names = [file_name(&arguments.character), file_name(&arguments.garment)];
     println!("{} on {}: {} vertices", names[1], names[0], garment.mesh.positions.len());
     let request = Request {
@@ -80,6 +85,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         names: names.each_ref().map(String::as_str),
         material: (&options.material, material),
         settings: Settings { attached: garment.pins.clone(), pinched: options.pinched, ..Settings::default() },
+        teacher: teacher.as_ref(),
         shard: *shard,
         poses: options.poses,
         mixed: options.mixed,

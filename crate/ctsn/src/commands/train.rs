@@ -2,7 +2,7 @@
 
 use super::{bar, file_name, one_of};
 use anyhow::{Context, Result, anyhow};
-use ctsn_core::model::{Body, HostModel, Storage};
+use ctsn_core::model::{Body, Cut, HostModel, STEPS, Storage};
 use ctsn_rig::file;
 use ctsn_train::body::body;
 use ctsn_train::dataset::{Dataset, Setup, fingerprint};
@@ -128,6 +128,7 @@ impl Training {
         let architecture = variant.sizes(self.network);
         let mut model = training::initial(setup, &slices.train, architecture, self.settings.seed)?;
         model.body = Some(body);
+        model.cut = Some(Cut::new(setup.garment.clone(), &model.graph, STEPS)?);
         let mixed = if slices.mixed == 0 { String::new() } else { format!(" ({} of them mixed)", slices.mixed) };
         println!(
             "{} poses to learn from{mixed}, {} to validate, {} vertices, {architecture:?}",

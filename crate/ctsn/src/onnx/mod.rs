@@ -1,5 +1,5 @@
-//! The network as an ONNX file. network.md §1–4, all of it and nothing of the repair: what `network::forward` computes
-//! for both streams, from the same joints to the same positions.
+//! The network as an ONNX file. network.md §1–4, all of it, and nothing of polish and repair: what
+//! `network::forward` computes for both streams, from the same joints to the same positions.
 //!
 //! It is not written as a `Device`, one operation after the other: what makes it fast in onnxruntime, such as edge
 //! terms from which products start, spans operations. Tests in `tests/onnx/` hold the two together.
@@ -31,7 +31,12 @@ pub fn onnx(model: &HostModel) -> Vec<u8> {
     let meaning = "World transforms of the joints, 3x4 and row-major, in metres; their order is in the metadata";
     let input = graph.input("joints", &[joints, 3, 4], meaning);
     let positions = network(&mut graph, model, &input);
-    graph.output("positions", &[n, 3], "Cloth vertices in the world, metres; not repaired", &positions);
+    graph.output(
+        "positions",
+        &[n, 3],
+        "Cloth vertices in the world, metres; neither polished nor repaired",
+        &positions,
+    );
     let entry = |key: &str, value: String| message::Entry { key: key.to_owned(), value };
     let file = message::Model {
         ir_version: FORMAT,

@@ -2,7 +2,10 @@
 
 use super::{Id, IndexId, Record, Recorder};
 use crate::pack::{self, whole};
-use ctsn_core::operation::{Activation, Attend, Blend, BodyFrame, Features, Linear, Normals, Skin, Space, Surface};
+use ctsn_core::cpu::network::polish;
+use ctsn_core::operation::{
+    Activation, Attend, Blend, BodyFrame, Features, Linear, Normals, Polish, Skin, Space, Surface,
+};
 use ctsn_core::pose::Frame;
 use ctsn_shaders as shaders;
 
@@ -140,6 +143,24 @@ impl Record for Attend<Id, Id, IndexId> {
         let limit = recorder.gpu.device().limits().max_compute_workgroups_per_dimension as usize;
         recorder.dispatch(&shaders::ATTEND, params, &operands, [n.min(limit), n.div_ceil(limit)], output);
         recorder.give_room(features);
+    }
+}
+
+impl Record for Polish<Id, Id, IndexId> {
+    fn record(self, recorder: &mut Recorder) {
+        let Self { offsets, neighbours, squares, share, first, current, other } = self;
+        let n = recorder.length(current) / 3;
+        let operands = [
+            recorder.indexed(offsets),
+            recorder.indexed(neighbours),
+            recorder.pack(("squares", squares.0), |it| it.values(squares).to_vec()),
+            recorder.rows(share, 1, 4),
+            recorder.rows(current, 3, 3),
+            recorder.rows(other, 3, 3),
+        ];
+        let momentum = if first { 0.0 } else { polish::MOMENTUM };
+        let params = shaders::Polish { vertices: n as u32, rate: polish::RATE, momentum };
+        recorder.dispatch(&shaders::POLISH, params, &operands, [n, 1], other);
     }
 }
 

@@ -19,6 +19,12 @@ impl Setup {
             format!("another material: {}", difference(&found.material, &wanted.material)?)
         } else if found.settings != wanted.settings {
             format!("other settings of the simulator: {}", difference(&found.settings, &wanted.settings)?)
+        } else if found.teacher != wanted.teacher {
+            let told = |of: &Description| match &of.teacher {
+                Some(digest) => format!("relaxed from the predictions of the model {digest}"),
+                None => "simulated along a path".to_owned(),
+            };
+            format!("its poses are {}, not {}", told(found), told(wanted))
         } else if (found.rate, &found.clips, &found.frames) != (wanted.rate, &wanted.clips, &wanted.frames) {
             let clips = |of: &Description| of.clips.iter().cloned().zip(of.frames.iter().copied()).collect::<Vec<_>>();
             let (ours, theirs) = (clips(found), clips(wanted));

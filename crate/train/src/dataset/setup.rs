@@ -36,6 +36,9 @@ pub struct Description {
     pub material: Fabric,
     /// The simulator's numerical settings: another path is another truth.
     pub settings: Settings,
+    /// Digest of the model whose predictions the poses were relaxed from; none where they came along a path.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub teacher: Option<String>,
 }
 
 /// Everything about a dataset but its poses.

@@ -1,9 +1,10 @@
 //! What to simulate, and the setup of the dataset that comes of it.
 
 use super::Shard;
+use crate::dataset::digest;
 use crate::dataset::{Description, Setup};
 use ctsn_cloth::simulate::{Fabric, Material, Settings};
-use ctsn_core::model::Surface;
+use ctsn_core::model::{HostModel, Storage, Surface};
 use ctsn_rig::{Character, Garment, SkinWeights, numbers, row_major};
 
 /// What to simulate.
@@ -18,6 +19,8 @@ pub struct Request<'a> {
     pub material: (&'a str, Material),
     /// Settings of the simulator.
     pub settings: Settings,
+    /// A model of the same garment on the same character, from whose predictions the poses are relaxed.
+    pub teacher: Option<&'a HostModel>,
     /// The part of the poses to simulate.
     pub shard: Shard,
     /// How many frames of the clips to simulate, evenly spread; `None` for all. More extend fewer.
@@ -66,6 +69,7 @@ impl Request<'_> {
             inverse_bind: joints.iter().map(|joint| row_major(&joint.inverse_bind).to_vec()).collect(),
             material: Fabric { name: self.material.0.to_owned(), material: self.material.1 },
             settings: self.settings.clone(),
+            teacher: self.teacher.map(|model| format!("{:016x}", digest(&model.to_bytes(Storage::F32)))),
         }
     }
 }

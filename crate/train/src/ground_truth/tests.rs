@@ -67,6 +67,30 @@ fn a_dataset_that_kept_its_fabric_as_text_says_what_to_do() {
     assert!(refused.contains("setup.safetensors") && refused.contains("older version"), "{refused}");
 }
 
+#[test]
+fn a_dataset_knows_whose_predictions_its_poses_were_relaxed_from() {
+    let (character, garment) = scene();
+    let (setup, samples) = crate::synthetic::dataset(100, 3, 4);
+    let samples: Vec<&Sample> = samples.iter().collect();
+    let architecture = crate::training::Architecture { embedding: 2, basis: 2, layers: 1, heads: 1, features: 4 };
+    let [first, second] = [1, 2].map(|seed| crate::training::initial(&setup, &samples, architecture, seed).unwrap());
+    let by = |teacher| Request { teacher, ..request(&character, &garment) }.setup();
+    assert_eq!(by(None).description.teacher, None);
+    assert_eq!(by(Some(&first)), by(Some(&first)));
+    let folder = tempfile::tempdir().unwrap();
+    by(Some(&first)).write(folder.path()).unwrap();
+    let found = Setup::read(folder.path()).unwrap().expect("a setup");
+    found.check_same(&by(Some(&first)), folder.path()).unwrap();
+    for other in [Some(&second), None] {
+        let refused = found.check_same(&by(other), folder.path()).unwrap_err().to_string();
+        assert!(refused.contains("predictions"), "{refused}");
+    }
+    // The model is of other cloth.
+    let run = Run::new(Request { teacher: Some(&first), ..request(&character, &garment) }, &folder.path().join("data"));
+    let refused = run.err().expect("refused").to_string();
+    assert!(refused.contains("not the model's"), "{refused}");
+}
+
 fn request<'a>(character: &'a Character, garment: &'a Garment) -> Request<'a> {
     Request {
         character,
@@ -74,6 +98,7 @@ fn request<'a>(character: &'a Character, garment: &'a Garment) -> Request<'a> {
         names: ["a.glb", "b.glb"],
         material: ("cotton", Material::default()),
         settings: Settings::default(),
+        teacher: None,
         shard: Shard::WHOLE,
         poses: None,
         mixed: 0,

@@ -1,5 +1,6 @@
 //! Errors of one way to predict, gathered over frames. Units of the network: metres, degrees, seconds.
 
+use super::folds::FoldErrors;
 use super::judge::PoseErrors;
 use ctsn_rig::statistics::Sorted;
 use serde::{Deserialize, Serialize};
@@ -37,6 +38,9 @@ pub struct Errors {
     pub jitter: Option<f64>,
     /// The same in slow motion between the judged poses, see [`super::slow`]; `None` where it was not predicted.
     pub slow_jitter: Option<f64>,
+    /// Folds; zeros in what was written before they were measured.
+    #[serde(default)]
+    pub folds: FoldErrors,
 }
 
 impl Statistic {
@@ -65,6 +69,7 @@ impl Errors {
             stretch: over(|frame| frame.stretch).mean,
             jitter,
             slow_jitter: None,
+            folds: FoldErrors::default(),
         }
     }
 }

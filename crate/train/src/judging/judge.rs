@@ -1,7 +1,8 @@
 //! What predictions of one dataset are judged against: its truth, its body, its cloth at rest. All in the body frame.
 
 use super::errors::Errors;
-use crate::dataset::{Dataset, Sample, Setup};
+use super::folds::{FoldErrors, FoldJudge, FrameFolds};
+use crate::dataset::{Sample, Setup};
 use crate::{Error, Result};
 use ctsn_cloth::simulate::BodyDistance;
 use ctsn_core::cpu::Cpu;
@@ -38,6 +39,8 @@ pub struct Run {
     pub positions: Vec<Vec<DVec3>>,
     /// Errors by sample.
     pub frames: Vec<PoseErrors>,
+    /// Folds by sample.
+    pub folds: Vec<FrameFolds>,
 }
 
 /// Judges predictions of the poses of one dataset.
@@ -47,6 +50,7 @@ pub struct Judge<'a> {
     body: BodyDistance,
     /// Each edge once, with its length at rest, metres.
     edges: Vec<([usize; 2], f64)>,
+    folds: FoldJudge,
     /// Greatest extent of the canonical body, metres: the height of an upright body, the length of one on four legs.
     pub size: f64,
 }
@@ -65,7 +69,14 @@ impl<'a> Judge<'a> {
             let found = format!("found an extent of {size} m and {} edges", edges.len());
             return Err(Error::Dataset(format!("wanted a body with an extent and cloth with edges, {found}")));
         }
-        Ok(Self { setup, character: setup.character()?, body: body_distance(setup)?, edges, size })
+        Ok(Self {
+            setup,
+            character: setup.character()?,
+            body: body_distance(setup)?,
+            edges,
+            folds: FoldJudge::new(setup)?,
+            size,
+        })
     }
 
     /// World positions [n, 3] -> body frame of the dataset.
@@ -91,13 +102,16 @@ impl<'a> Judge<'a> {
 
     /// Judges `positions` [samples][n], body frame.
     pub fn run(&self, samples: &[&Sample], positions: Vec<Vec<DVec3>>) -> Run {
-        let frames = samples.par_iter().zip(&positions).map(|(sample, predicted)| self.pose_errors(sample, predicted));
-        Run { frames: frames.collect(), positions }
+        let judge = |(sample, predicted): (&&Sample, &Vec<DVec3>)| {
+            let truth = vertices(&sample.truth);
+            (self.pose_errors(sample, predicted, &truth), self.folds.frame(predicted, &truth))
+        };
+        let (frames, folds) = samples.par_iter().zip(&positions).map(judge).unzip();
+        Run { frames, folds, positions }
     }
 
-    fn pose_errors(&self, sample: &Sample, predicted: &[DVec3]) -> PoseErrors {
-        let truth = vertices(&sample.truth);
-        let (distance, normal) = differences(predicted, &truth, &self.setup.triangles);
+    fn pose_errors(&self, sample: &Sample, predicted: &[DVec3], truth: &[DVec3]) -> PoseErrors {
+        let (distance, normal) = differences(predicted, truth, &self.setup.triangles);
         let pose = ctsn_rig::pose(&sample.joints);
         let signed = self.body.signed(&pose, predicted);
         let inside = signed.iter().filter(|distance| **distance < 0.0).count() as f64;
@@ -116,7 +130,10 @@ impl<'a> Judge<'a> {
     pub fn errors(&self, samples: &[&Sample], run: &Run, range: Range<usize>) -> Errors {
         let rate = self.setup.description.rate;
         let jitter = super::jitter(&samples[range.clone()], &run.positions[range.clone()], rate);
-        Errors::over(&run.frames[range], jitter, self.size)
+        Errors {
+            folds: FoldErrors::over(&run.folds[range.clone()]),
+            ..Errors::over(&run.frames[range], jitter, self.size)
+        }
     }
 
     /// Mean over the samples of distance (metres) and angle (degrees), by vertex [n].
@@ -132,9 +149,8 @@ impl<'a> Judge<'a> {
     }
 }
 
-/// Refuses a model whose cloth or joints are not those of `dataset`.
-pub(super) fn check_same(model: &ctsn_core::model::HostModel, dataset: &Dataset) -> Result<()> {
-    let setup = &dataset.setup;
+/// Refuses a model whose cloth or joints are not those of the dataset of `setup`.
+pub fn check_same(model: &ctsn_core::model::HostModel, setup: &Setup) -> Result<()> {
     let size = |vertices: usize, triangles: &[u32]| format!("{vertices} vertices, {} triangles", triangles.len() / 3);
     let wanted = size(model.sizes.vertices, &model.triangles);
     let found = size(setup.template.len() / 3, &setup.triangles);
@@ -175,7 +191,7 @@ pub fn differences(a: &[DVec3], b: &[DVec3], triangles: &[u32]) -> (f64, f64) {
     (sum.0 / count, sum.1 / count)
 }
 
-fn vertex_normals(positions: &[DVec3], triangles: &[u32]) -> Vec<DVec3> {
+pub(super) fn vertex_normals(positions: &[DVec3], triangles: &[u32]) -> Vec<DVec3> {
     let positions = ctsn_rig::numbers(positions);
     let mut result = vec![0.0; positions.len()];
     Cpu::new().compute(Normals { positions: &positions[..], triangles, normals: &mut result[..] });

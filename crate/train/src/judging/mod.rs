@@ -1,6 +1,7 @@
 //! Errors of a model on simulated poses it has not seen. network.md §7, paper § "Quantitative Comparisons".
 
 mod errors;
+mod folds;
 mod judge;
 mod slow;
 mod table;
@@ -14,8 +15,9 @@ use ctsn_core::model::HostModel;
 use ctsn_core::{Predictor, Streams};
 use ctsn_rig::vertices;
 pub use errors::{Errors, Statistic};
+pub use folds::{FoldErrors, FrameFolds};
 use glam::DVec3;
-pub use judge::{Judge, PoseErrors, Run, body_distance, differences, vertex_errors};
+pub use judge::{Judge, PoseErrors, Run, body_distance, check_same, differences, vertex_errors};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -79,6 +81,8 @@ pub struct Report {
     pub network: Errors,
     /// The whole network before penetration is repaired; null where the model repairs nothing.
     pub unrepaired: Option<Errors>,
+    /// The whole network, repaired, but not polished; null where the model polishes nothing.
+    pub unpolished: Option<Errors>,
     /// The skeleton stream alone.
     pub skeleton: Errors,
     /// Plain linear blend skinning with `W_C^I`.
@@ -96,6 +100,21 @@ pub struct Report {
     /// E_dist of the network by vertex [n], metres: for pictures.
     #[serde(skip)]
     pub by_vertex: Vec<f64>,
+}
+
+impl Report {
+    /// The ways to predict, each with its name.
+    pub fn ways(&self) -> impl Iterator<Item = (&'static str, &Errors)> {
+        let ways = [
+            ("network", Some(&self.network)),
+            ("not repaired", self.unrepaired.as_ref()),
+            ("not polished", self.unpolished.as_ref()),
+            ("skeleton stream", Some(&self.skeleton)),
+            ("plain skinning", Some(&self.skinning)),
+            ("simulation", Some(&self.truth)),
+        ];
+        ways.into_iter().filter_map(|(name, errors)| Some((name, errors?)))
+    }
 }
 
 /// The samples of one split; an error where there are none.
@@ -128,9 +147,14 @@ pub fn without_repair(model: &HostModel) -> Option<HostModel> {
     model.body.as_ref().map(|_| HostModel { body: None, ..model.clone() })
 }
 
+/// The same model without the polish; `None` where it polishes nothing.
+pub fn without_polish(model: &HostModel) -> Option<HostModel> {
+    model.cut.as_ref().filter(|cut| cut.steps > 0).map(|_| HostModel { cut: None, ..model.clone() })
+}
+
 /// Evaluates `model` on one split of `dataset`.
 pub fn evaluate(model: &HostModel, dataset: &Dataset, split: Split) -> Result<Report> {
-    judge::check_same(model, dataset)?;
+    judge::check_same(model, &dataset.setup)?;
     let samples = unseen(dataset, split)?;
     let judge = Judge::new(&dataset.setup)?;
     let run = |model: &HostModel, streams| {
@@ -138,6 +162,8 @@ pub fn evaluate(model: &HostModel, dataset: &Dataset, split: Split) -> Result<Re
     };
     let bare = without_repair(model);
     let unrepaired = bare.as_ref().map(|bare| run(bare, Streams::Both)).transpose()?;
+    let rough = without_polish(model);
+    let unpolished = rough.as_ref().map(|rough| run(rough, Streams::Both)).transpose()?;
     let (network, skinning) = (run(model, Streams::Both)?, run(model, Streams::None)?);
     let whole = |run: &Run| judge.errors(&samples, run, 0..samples.len());
     let slow = slow::motion(&judge, &samples);
@@ -156,6 +182,7 @@ pub fn evaluate(model: &HostModel, dataset: &Dataset, split: Split) -> Result<Re
         size: judge.size,
         rejected: dataset.rejected.len(),
         unrepaired: unrepaired.as_ref().zip(bare.as_ref()).map(|(run, bare)| moving(run, bare)).transpose()?,
+        unpolished: unpolished.as_ref().zip(rough.as_ref()).map(|(run, rough)| moving(run, rough)).transpose()?,
         skeleton: whole(&run(model, Streams::Skeleton)?),
         truth: whole(&truth),
         ratio: whole(&network).distance.mean / whole(&skinning).distance.mean,

@@ -1,6 +1,6 @@
 //! The report on a terminal: one row per way to predict.
 
-use super::{Report, Statistic};
+use super::{Errors, Report, Statistic};
 
 impl std::fmt::Display for Report {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
@@ -14,14 +14,7 @@ impl std::fmt::Display for Report {
             "{:<16}{:>16}{:>8}{:>16}{:>8}{:>10}{:>10}{:>9}{:>11}{:>8}{:>8}",
             "", heads[0], heads[1], heads[2], heads[3], heads[4], heads[5], heads[6], heads[7], heads[8], heads[9]
         )?;
-        let rows = [
-            ("network", Some(&self.network)),
-            ("not repaired", self.unrepaired.as_ref()),
-            ("skeleton stream", Some(&self.skeleton)),
-            ("plain skinning", Some(&self.skinning)),
-            ("simulation", Some(&self.truth)),
-        ];
-        for (name, errors) in rows.into_iter().filter_map(|(name, errors)| Some((name, errors?))) {
+        for (name, errors) in self.ways() {
             let pair =
                 |statistic: Statistic, unit: f64| format!("{:.2} ± {:.2}", statistic.mean * unit, statistic.std * unit);
             let (distance, normal) = (pair(errors.distance, 1e3), pair(errors.normal, 1.0));
@@ -33,10 +26,31 @@ impl std::fmt::Display for Report {
             let crossing = errors.crossing * 100.0;
             writeln!(f, "{inside:>10.3}{depth:>10.1}{crossing:>9.3}{stretch:>11.2}{jitter:>8}{slow:>8}")?;
         }
+        self.folds(f)?;
         let (share, size, scaled) = (self.ratio * 100.0, self.size, self.network.scaled);
         write!(
             f,
             "network: {share:.1} % of plain skinning's E_dist; {scaled:.2} mm per metre of the figure ({size:.2} m)"
         )
+    }
+}
+
+impl Report {
+    /// Whether folds are kept: the simulation's ratios are 1.
+    fn folds(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let heads = ["bending", "curvature", "fine", "correl.", "strain %", "stretch %", "shear %", "energy"];
+        write!(f, "{:<16}", "folds")?;
+        heads.iter().try_for_each(|head| write!(f, "{head:>11}"))?;
+        writeln!(f, "{:>26}", "coarse, middle, fine mm")?;
+        for (name, Errors { folds, .. }) in self.ways() {
+            let ratios = [folds.bending, folds.curvature, folds.fine, folds.correlation];
+            write!(f, "{name:<16}")?;
+            ratios.iter().try_for_each(|ratio| write!(f, "{ratio:>11.3}"))?;
+            let shares = [folds.strain, folds.stretch, folds.shear].map(|share| 100.0 * share);
+            shares.iter().try_for_each(|share| write!(f, "{share:>11.2}"))?;
+            let [coarse, middle, fine] = folds.bands.map(|band| 1e3 * band);
+            writeln!(f, "{:>11.2}{coarse:>12.2}{middle:>7.2}{fine:>7.2}", folds.energy)?;
+        }
+        Ok(())
     }
 }

@@ -117,3 +117,44 @@ fn what_cannot_be_judged_is_named() {
     named.setup.description.joints[1] = "knee".to_owned();
     refused(&model, &named, Split::Test, &["joints", "\"joint1\"", "\"knee\""]);
 }
+
+#[test]
+fn folds_are_measured_against_those_of_the_truth() {
+    let dataset = dataset();
+    let judge = Judge::new(&dataset.setup).expect("a judge");
+    let samples = unseen(&dataset, Split::Test).expect("unseen poses");
+    let folds = |by: &dyn Fn(usize, DVec3) -> DVec3| {
+        let state = |sample: &&Sample| -> Vec<DVec3> {
+            vertices(&sample.truth).into_iter().enumerate().map(|(i, position)| by(i, position)).collect()
+        };
+        let run = judge.run(&samples, samples.iter().map(state).collect());
+        judge.errors(&samples, &run, 0..samples.len()).folds
+    };
+    let close = |found: f64, wanted: f64, by: f64| assert!((found - wanted).abs() < by, "{found}, wanted {wanted}");
+    let same = folds(&|_, position| position);
+    for ratio in [same.bending, same.curvature, same.fine, same.correlation, same.energy] {
+        close(ratio, 1.0, 1e-6);
+    }
+    assert_eq!(same.bands, [0.0; 3]);
+    // Cloth that hangs higher differs in the coarse band alone, and in weight.
+    let moved = folds(&|_, position| position + DVec3::Y * 0.1);
+    [moved.bands[0] - 0.1, moved.bands[1], moved.bands[2]].iter().for_each(|band| close(*band, 0.0, 1e-5));
+    close(moved.strain, same.strain, 1e-6);
+    close(moved.bending, 1.0, 1e-6);
+    assert!(moved.energy > 1.0, "{moved:?}");
+    let turned = folds(&|_, p| DVec3::new(p.z, p.y, -p.x));
+    close(turned.curvature, 1.0, 1e-4);
+    close(turned.energy, 1.0, 1e-2);
+    // The garment as it was cut has no angle and no strain beside itself; the truth is it, and noise.
+    let cut = vertices(&dataset.setup.garment);
+    let smooth = folds(&|i, _| cut[i]);
+    close(smooth.bending, 0.0, 1e-6);
+    close(smooth.strain, 0.0, 1e-6);
+    // A tube of few edges around is itself most of what is fine.
+    assert!(smooth.fine < 1.0 && smooth.curvature < 0.95, "{smooth:?}");
+    // Twice as far along every axis: each edge is as long again as it was cut.
+    let large = folds(&|i, _| 2.0 * cut[i]);
+    close(large.strain, 1.0, 1e-6);
+    close(large.stretch, 1.0, 1e-6);
+    assert!(large.energy > 10.0, "{large:?}");
+}

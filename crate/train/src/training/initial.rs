@@ -82,6 +82,7 @@ pub fn initial(setup: &Setup, train: &[&Sample], architecture: Architecture, see
         mesh_basis: small(n * 3 * basis, &mut rng),
         mesh_stream: true,
         surface: Some(setup.surface.clone()).filter(|surface| !surface.vertex.is_empty()),
+        cut: None,
         body: None,
         training: None,
     })

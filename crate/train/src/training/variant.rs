@@ -81,7 +81,7 @@ impl Variant {
 /// Whether the mesh stream of a trained model says nothing in all of these poses: once its last ReLUs are dead, no
 /// gradient wakes it again. (It happened with a cape, both seeds tried: the smoothed target left it too little to do.)
 pub fn is_mesh_silent(model: &HostModel, samples: &[&Sample]) -> Result<bool> {
-    let mut predictor = Predictor::from_model(HostModel { body: None, ..model.clone() }, Level::new());
+    let mut predictor = Predictor::from_model(HostModel { body: None, cut: None, ..model.clone() }, Level::new());
     for sample in samples {
         predictor.predict_row_major(&sample.joints, Streams::Both)?;
         if predictor.activations().mesh.iter().any(|number| *number != 0.0) {

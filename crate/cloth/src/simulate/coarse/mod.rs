@@ -10,14 +10,9 @@ use ctsn_rig::mesh::triangle::closest;
 use glam::{DMat3, DVec3};
 
 use self::thin::{Thinned, thin};
-use super::neighbourhood::Elements;
 
 /// Vertices of the coarse garment.
 const COARSE: usize = 1500;
-
-/// Rounds of smoothing that part crossing cloth, and after how many the parts smoothed grow by a ring.
-const PARTING_ROUNDS: usize = 24;
-const PARTING_GROWTH: usize = 6;
 
 /// A thinned garment and how the fine one lies on it.
 pub(super) struct Coarse {
@@ -119,31 +114,6 @@ fn nearest_rotation(matrix: DMat3) -> DMat3 {
     turn
 }
 
-/// Smooths the cloth where it crosses itself until it does not; none where that does not help.
-pub(super) fn part(elements: &Elements, rings: &Graph<Vec<u32>>, mut x: Vec<DVec3>) -> Option<Vec<DVec3>> {
-    for round in 0..PARTING_ROUNDS {
-        let crossings = elements.crossings(&x);
-        if crossings.is_empty() {
-            return Some(x);
-        }
-        let mut chosen = vec![false; x.len()];
-        crossings
-            .iter()
-            .flatten()
-            .flat_map(|&t| elements.triangles[t as usize])
-            .for_each(|v| chosen[v as usize] = true);
-        for _ in 0..=round / PARTING_GROWTH {
-            let old = chosen.clone();
-            (0..x.len()).filter(|&v| old[v]).for_each(|v| {
-                rings.of(v).iter().for_each(|&w| chosen[w as usize] = true);
-            });
-        }
-        let mean = |v: usize| rings.of(v).iter().map(|&w| x[w as usize]).sum::<DVec3>() / rings.of(v).len() as f64;
-        x = (0..x.len()).map(|v| if chosen[v] { (x[v] + mean(v)) * 0.5 } else { x[v] }).collect();
-    }
-    elements.crossings(&x).is_empty().then_some(x)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -161,17 +131,5 @@ mod tests {
         let wanted = moved(&fine.positions);
         let furthest = laid.iter().zip(&wanted).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
         assert!(furthest < 1e-9, "{furthest}");
-    }
-
-    /// A corner of a sheet pushed through it is drawn out again.
-    #[test]
-    fn cloth_that_crosses_itself_is_parted() {
-        let fine = skirt(40, 10);
-        let elements = Elements::new(&fine.triangles, fine.positions.len());
-        let mut x = fine.positions.clone();
-        x[205] = x[205] * DVec3::new(0.7, 1.0, 0.7) + DVec3::Y * 0.1;
-        assert!(!elements.crossings(&x).is_empty());
-        let parted = part(&elements, &fine.rings(), x).expect("parted");
-        assert!(elements.crossings(&parted).is_empty());
     }
 }

@@ -41,10 +41,15 @@ fn angle_gradient(vertices: &[usize; 4], x: &[DVec3]) -> [DVec3; 4] {
 }
 
 impl Hinge {
+    /// Dihedral angle at the positions `x` [n], radians; zero when flat.
+    pub fn angle(&self, x: &[DVec3]) -> f64 {
+        angle(&self.vertices, x)
+    }
+
     /// Angle from rest, in -π..π.
     fn bend(&self, x: &[DVec3]) -> f64 {
         use std::f64::consts::PI;
-        let bend = angle(&self.vertices, x) - self.rest;
+        let bend = self.angle(x) - self.rest;
         if bend > PI {
             bend - 2.0 * PI
         } else if bend < -PI {

@@ -71,8 +71,8 @@ impl Triangle {
         Some(Self { vertices, gradients: [-(g1 + g2), g1, g2], area })
     }
 
-    /// Columns of `F = Σ x_a ⊗ g_a`.
-    fn deformation(&self, x: &[DVec3]) -> [DVec3; 2] {
+    /// Columns of `F = Σ x_a ⊗ g_a` at the positions `x` [n]: what became of a metre of weft, and of warp.
+    pub fn deformation(&self, x: &[DVec3]) -> [DVec3; 2] {
         let [a, b, c] = self.vertices.map(|i| x[i]);
         let [_, g1, g2] = self.gradients;
         let (d1, d2) = (b - a, c - a);

@@ -12,6 +12,7 @@ use crate::simulate::material::Material;
 use crate::simulate::newton::{Layout, Solver};
 use crate::simulate::proximity::{Pair, barrier};
 use crate::simulate::settings::Settings;
+use crate::simulate::untangle::untangle;
 use ctsn_rig::Mesh;
 
 #[test]
@@ -53,6 +54,9 @@ fn crossed_sheets_are_found() {
     mesh.triangles.extend(copy);
     let cloth = Cloth::new(&mesh, &down(&mesh), &Material::default(), 0.0).unwrap();
     assert!(!cloth.elements.crossings(&mesh.positions).is_empty(), "an upright sheet stands in a level one");
+    let mut apart = mesh.positions.clone();
+    untangle(&cloth.elements, &mesh.rings(), &mut apart);
+    assert_eq!(cloth.elements.crossings(&apart), Vec::<[u32; 2]>::new(), "smoothed apart");
     mesh.positions[first as usize..].iter_mut().for_each(|p| p.y += 1.0);
     assert_eq!(cloth.elements.crossings(&mesh.positions), Vec::<[u32; 2]>::new());
 }

@@ -1,7 +1,7 @@
 //! `β = sigmoid(w_g · [ĥ ; r ; ĥ - r])`, `h = ReLU(LayerNorm((1-β) ĥ + β r))`, eps 1e-5. network.md §3.
 
-use crate::cpu::vector::{dot, sum};
-use fearless_simd::{Simd, SimdBase, SimdFloat};
+use super::exp::exp;
+use fearless_simd::{Select, Simd, SimdBase, SimdFloat};
 
 /// LayerNorm's eps; part of the contract.
 pub const EPSILON: f32 = 1e-5;
@@ -19,35 +19,86 @@ pub(super) fn gate<S: Simd>(
     norm_bias: &[f32],
     output: &mut [f32],
 ) {
-    let features = norm_weight.len();
-    let (gate_attended, rest) = gate.split_at(features);
-    let (gate_skip, gate_difference) = rest.split_at(features);
-    // w3 · (ĥ - r) is split in two products; the difference is never stored.
-    let logit = dot(simd, gate_attended, attended) + dot(simd, gate_skip, skip) + dot(simd, gate_difference, attended)
-        - dot(simd, gate_difference, skip);
-    let beta = 1.0 / (1.0 + (-logit).exp());
-    for ((output, attended), skip) in output.iter_mut().zip(attended).zip(skip) {
-        *output = attended + beta * (skip - attended);
-    }
-    let mean = sum(simd, output) / features as f32;
-    output.iter_mut().for_each(|value| *value -= mean);
-    let variance = dot(simd, output, output) / features as f32;
-    normalise(simd, 1.0 / (variance + EPSILON).sqrt(), norm_weight, norm_bias, output);
+    let features = norm_weight.len() as f32;
+    let beta = S::f32s::splat(simd, sigmoid(simd, logit(simd, attended, skip, gate)));
+    let mean = mix(simd, beta, attended, skip, output) / features;
+    let variance = squares(simd, mean, output) / features;
+    normalise(simd, mean, 1.0 / (variance + EPSILON).sqrt(), [norm_weight, norm_bias], output);
 }
 
-/// output = max(0, weight · output · scale + bias).
+/// `w_g · [ĥ ; r ; ĥ - r]`, as (w1 + w3) · ĥ + (w2 - w3) · r: the difference is never made.
 #[inline(always)]
-fn normalise<S: Simd>(simd: S, scale: f32, weight: &[f32], bias: &[f32], output: &mut [f32]) {
+fn logit<S: Simd>(simd: S, attended: &[f32], skip: &[f32], gate: &[f32]) -> f32 {
+    let (lanes, features) = (S::f32s::LEN, attended.len());
+    let whole = features / lanes * lanes;
+    let [mut first, mut second] = [S::f32s::splat(simd, 0.0); 2];
+    for at in (0..whole).step_by(lanes) {
+        let load = |slice: &[f32], at: usize| S::f32s::from_slice(simd, &slice[at..at + lanes]);
+        let difference = load(gate, 2 * features + at);
+        first = load(attended, at).mul_add(load(gate, at) + difference, first);
+        second = load(skip, at).mul_add(load(gate, features + at) - difference, second);
+    }
+    let mut sum = (first + second).reduce_sum();
+    for at in whole..features {
+        let difference = gate[2 * features + at];
+        sum += attended[at] * (gate[at] + difference) + skip[at] * (gate[features + at] - difference);
+    }
+    sum
+}
+
+/// `1 / (1 + e^-x)`, by an exponential of what is not above zero, as [`exp`] wants it.
+#[inline(always)]
+fn sigmoid<S: Simd>(simd: S, x: f32) -> f32 {
+    let power = exp(simd, S::f32s::splat(simd, -x.abs())).as_slice()[0];
+    if x < 0.0 { power / (1.0 + power) } else { 1.0 / (1.0 + power) }
+}
+
+/// output = ĥ + β (r - ĥ); its sum.
+#[inline(always)]
+fn mix<S: Simd>(simd: S, beta: S::f32s, attended: &[f32], skip: &[f32], output: &mut [f32]) -> f32 {
     let lanes = S::f32s::LEN;
-    let (factor, zero) = (S::f32s::splat(simd, scale), S::f32s::splat(simd, 0.0));
+    let whole = output.len() / lanes * lanes;
+    let mut sum = S::f32s::splat(simd, 0.0);
+    for at in (0..whole).step_by(lanes) {
+        let load = |slice: &[f32]| S::f32s::from_slice(simd, &slice[at..at + lanes]);
+        let attended = load(attended);
+        let mixed = beta.mul_add(load(skip) - attended, attended);
+        mixed.store_slice(&mut output[at..at + lanes]);
+        sum += mixed;
+    }
+    let mut sum = sum.reduce_sum();
+    for at in whole..output.len() {
+        output[at] = attended[at] + beta.as_slice()[0] * (skip[at] - attended[at]);
+        sum += output[at];
+    }
+    sum
+}
+
+/// `Σ (x - mean)²`.
+#[inline(always)]
+fn squares<S: Simd>(simd: S, mean: f32, values: &[f32]) -> f32 {
+    let mut chunks = values.chunks_exact(S::f32s::LEN);
+    let (mut sum, means) = (S::f32s::splat(simd, 0.0), S::f32s::splat(simd, mean));
+    for chunk in chunks.by_ref() {
+        let difference = S::f32s::from_slice(simd, chunk) - means;
+        sum = difference.mul_add(difference, sum);
+    }
+    sum.reduce_sum() + chunks.remainder().iter().map(|value| (value - mean) * (value - mean)).sum::<f32>()
+}
+
+/// output = max(0, weight · (output - mean) · scale + bias).
+#[inline(always)]
+fn normalise<S: Simd>(simd: S, mean: f32, scale: f32, [weight, bias]: [&[f32]; 2], output: &mut [f32]) {
+    let lanes = S::f32s::LEN;
+    let (means, factor, zero) = (S::f32s::splat(simd, mean), S::f32s::splat(simd, scale), S::f32s::splat(simd, 0.0));
     let whole = output.len() / lanes * lanes;
     for at in (0..whole).step_by(lanes) {
         let load = |slice: &[f32]| S::f32s::from_slice(simd, &slice[at..at + lanes]);
-        let value = (load(output) * factor).mul_add(load(weight), load(bias));
-        value.max(zero).store_slice(&mut output[at..at + lanes]);
+        let value = ((load(output) - means) * factor).mul_add(load(weight), load(bias));
+        value.simd_gt(zero).select(value, zero).store_slice(&mut output[at..at + lanes]);
     }
     for at in whole..output.len() {
-        output[at] = (output[at] * scale * weight[at] + bias[at]).max(0.0);
+        output[at] = ((output[at] - mean) * scale * weight[at] + bias[at]).max(0.0);
     }
 }
 

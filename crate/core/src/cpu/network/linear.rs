@@ -5,6 +5,7 @@
 //! lines of the cache. The copy costs 1 / rows of the product, so it is made anew for each call: weights may change
 //! between any two, as training does.
 
+use crate::cpu::threads::of;
 use crate::cpu::vector::{axpy, room};
 use crate::cpu::{Cpu, Kernel};
 use crate::operation::{Activation, Linear};
@@ -12,23 +13,34 @@ use fearless_simd::{Simd, SimdBase, SimdFloat, dispatch};
 
 /// Rows that stay in the cache: a whole number of tiles of any height below.
 const BLOCK: usize = 192;
+/// Rows of a tile, of long vectors and of those of four numbers.
+const HIGH: usize = 6;
+const LOW: usize = 4;
 /// Vectors of a panel.
 const VECTORS: usize = 2;
 
-/// Room for one call.
-#[derive(Default)]
-pub struct Scratch {
-    /// Bias, then weights, of VECTORS vectors of columns after another [panels, inputs + 1, VECTORS · lanes].
-    panels: Vec<f32>,
-    /// A block of x, tile after tile [tiles, inputs, rows of a tile].
-    tiles: Vec<f32>,
+/// What some rows are computed of.
+struct Operands<'a> {
+    x: &'a [f32],
+    weight: &'a [f32],
+    bias: &'a [f32],
+    relu: bool,
+    /// Bias, then weights, of VECTORS vectors of columns after another [panels, inputs + 1, VECTORS · lanes]. Empty
+    /// where rows are computed one by one.
+    panels: &'a [f32],
 }
 
 impl Kernel for Linear<&[f32], &mut [f32]> {
     fn run(self, cpu: &mut Cpu) {
         let Self { x, weight, bias, activation, y } = self;
-        let (relu, scratch) = (activation == Activation::Relu, &mut cpu.linear);
-        dispatch!(cpu.level, simd => product(simd, x, weight, bias, relu, scratch, y));
+        let (relu, level, inputs) = (activation == Activation::Relu, cpu.level, weight.len() / bias.len());
+        let rows = y.len() / bias.len();
+        let panels = dispatch!(level, simd => pack(simd, rows, weight, bias, &mut cpu.panels));
+        cpu.threads.share(rows, [y], &mut cpu.scratch, |rows, [y], scratch| {
+            let x = of(x, &rows, inputs);
+            let (operands, tiles) = (Operands { x, weight, bias, relu, panels }, &mut scratch.tiles);
+            dispatch!(level, simd => product(simd, &operands, tiles, y));
+        });
     }
 }
 
@@ -36,19 +48,11 @@ impl Kernel for Linear<&[f32], &mut [f32]> {
 /// and in V8. With one row or vector more, the compiler or V8 keeps them in memory, at a third of the speed. In V8 a
 /// tile of x must lie together, too (40 GFLOP/s instead of 32); natively that costs a third where outputs are few.
 #[inline(always)]
-fn product<S: Simd>(
-    simd: S,
-    x: &[f32],
-    weight: &[f32],
-    bias: &[f32],
-    relu: bool,
-    scratch: &mut Scratch,
-    y: &mut [f32],
-) {
+fn product<S: Simd>(simd: S, operands: &Operands, tiles: &mut Vec<f32>, y: &mut [f32]) {
     if S::f32s::LEN > 4 {
-        blocks::<S, 6, false>(simd, x, weight, bias, relu, scratch, y);
+        blocks::<S, HIGH, false>(simd, operands, tiles, y);
     } else {
-        blocks::<S, 4, true>(simd, x, weight, bias, relu, scratch, y);
+        blocks::<S, LOW, true>(simd, operands, tiles, y);
     }
 }
 
@@ -58,13 +62,11 @@ fn product<S: Simd>(
 #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
 fn blocks<S: Simd, const ROWS: usize, const TOGETHER: bool>(
     simd: S,
-    x: &[f32],
-    weight: &[f32],
-    bias: &[f32],
-    relu: bool,
-    scratch: &mut Scratch,
+    operands: &Operands,
+    scratch: &mut Vec<f32>,
     y: &mut [f32],
 ) {
+    let Operands { x, weight, bias, relu, panels } = *operands;
     let (inputs, outputs, width) = (weight.len() / bias.len(), bias.len(), VECTORS * S::f32s::LEN);
     let rows = y.len() / outputs;
     if rows < ROWS {
@@ -73,13 +75,11 @@ fn blocks<S: Simd, const ROWS: usize, const TOGETHER: bool>(
         }
         return;
     }
-    let panels = room(&mut scratch.panels, outputs.div_ceil(width) * (inputs + 1) * width);
-    pack(weight, bias, width, panels);
     for start in (0..rows).step_by(BLOCK) {
         let (tiles, last) = (BLOCK.min(rows - start).div_ceil(ROWS), rows - ROWS);
         // The last tile of all ends with the last row: some rows are computed twice, alike.
         let starts = (0..tiles).map(|tile| (start + tile * ROWS).min(last));
-        let copies = room(&mut scratch.tiles, if TOGETHER { tiles * ROWS * inputs } else { 0 });
+        let copies = room(scratch, if TOGETHER { tiles * ROWS * inputs } else { 0 });
         for (copy, at) in copies.chunks_exact_mut(ROWS * inputs).zip(starts.clone()) {
             let rows = tile_rows::<ROWS>(&x[at * inputs..], inputs);
             for (i, copy) in copy.as_chunks_mut::<ROWS>().0.iter_mut().enumerate().take(inputs) {
@@ -123,10 +123,14 @@ fn tile_rows<const ROWS: usize>(x: &[f32], inputs: usize) -> [&[f32]; ROWS] {
     std::array::from_fn(|r| &x[r * inputs..][..inputs])
 }
 
-/// Bias and weights -> panels; columns beyond the last are zero.
+/// Bias and weights -> panels; columns beyond the last are zero. No panels where there is no tile of rows.
 #[inline(always)]
-fn pack(weight: &[f32], bias: &[f32], width: usize, panels: &mut [f32]) {
-    let (inputs, outputs) = (weight.len() / bias.len(), bias.len());
+fn pack<'a, S: Simd>(_: S, rows: usize, weight: &[f32], bias: &[f32], panels: &'a mut Vec<f32>) -> &'a [f32] {
+    let (inputs, outputs, width) = (weight.len() / bias.len(), bias.len(), VECTORS * S::f32s::LEN);
+    if rows < if S::f32s::LEN > 4 { HIGH } else { LOW } {
+        return &[];
+    }
+    let panels = room(panels, outputs.div_ceil(width) * (inputs + 1) * width);
     for (p, panel) in panels.chunks_exact_mut((inputs + 1) * width).enumerate() {
         let columns = p * width..outputs.min((p + 1) * width);
         let rows = std::iter::once(bias).chain(weight.chunks_exact(outputs));
@@ -135,6 +139,7 @@ fn pack(weight: &[f32], bias: &[f32], width: usize, panels: &mut [f32]) {
             to[columns.len()..].fill(0.0);
         }
     }
+    panels
 }
 
 /// A tile of `W x + b`, of a panel; `x(row, input)`.

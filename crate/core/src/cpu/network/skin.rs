@@ -1,5 +1,6 @@
 //! Linear blend skinning `x_i = Σ_j W[i,j] A_j T_i`, then `N⁻¹` where the world is wanted. network.md §4.
 
+use crate::cpu::threads::of;
 use crate::cpu::{Cpu, Kernel};
 use crate::operation::{Skin, Space};
 use fearless_simd::{Simd, SimdBase, SimdFloat, dispatch, f32x4};
@@ -7,7 +8,13 @@ use fearless_simd::{Simd, SimdBase, SimdFloat, dispatch, f32x4};
 impl Kernel for Skin<&[f32], &mut [f32], &[u32]> {
     fn run(self, cpu: &mut Cpu) {
         let Self { rest, joints, weights, transforms, space, positions } = self;
-        dispatch!(cpu.level, simd => kernel(simd, rest, joints, weights, transforms, space, positions));
+        let (level, n) = (cpu.level, rest.len() / 3);
+        let width = weights.len() / n;
+        cpu.threads.share(n, [positions], &mut cpu.scratch, |rows, [positions], _| {
+            let (joints, weights) = (of(joints, &rows, width), of(weights, &rows, width));
+            let rest = of(rest, &rows, 3);
+            dispatch!(level, simd => kernel(simd, rest, joints, weights, transforms, space, positions));
+        });
     }
 }
 
@@ -22,7 +29,7 @@ fn kernel<S: Simd>(
     positions: &mut [f32],
 ) {
     let transforms = transforms.as_chunks::<12>().0;
-    let back = transforms[transforms.len() - 1];
+    let back: &[[f32; 4]] = transforms[transforms.len() - 1].as_chunks().0;
     let (rest, positions) = (rest.as_chunks::<3>().0, positions.as_chunks_mut::<3>().0);
     let width = weights.len() / rest.len();
     let slots = joints.chunks_exact(width).zip(weights.chunks_exact(width));
@@ -30,14 +37,17 @@ fn kernel<S: Simd>(
         let mut rows = [f32x4::splat(simd, 0.0); 3];
         for (joint, weight) in joints.iter().zip(weights) {
             let (transform, weight) = (&transforms[*joint as usize], f32x4::splat(simd, *weight));
-            for (row, r) in rows.iter_mut().zip([0, 4, 8]) {
-                *row = f32x4::from_slice(simd, &transform[r..r + 4]).mul_add(weight, *row);
+            for r in 0..3 {
+                rows[r] = f32x4::from_slice(simd, &transform[4 * r..][..4]).mul_add(weight, rows[r]);
             }
         }
-        let blended = rows.map(|row| apply(row.as_array(), rest));
+        // No closures: natively they were not compiled for the level, which took twice the time.
+        let rows = [rows[0].as_array(), rows[1].as_array(), rows[2].as_array()];
+        let [x, y, z] = [apply(rows[0], rest), apply(rows[1], rest), apply(rows[2], rest)];
+        let blended = [x, y, z];
         *position = match space {
             Space::Body => blended,
-            Space::World => [0, 4, 8].map(|r| apply(&[back[r], back[r + 1], back[r + 2], back[r + 3]], &blended)),
+            Space::World => [apply(&back[0], &blended), apply(&back[1], &blended), apply(&back[2], &blended)],
         };
     }
 }

@@ -141,7 +141,7 @@ impl Dipoles {
             let squared = dx.mul_add(dx, dy.mul_add(dy, dz * dz));
             let (nx, ny) = (S::f32s::from_slice(simd, &nx[part.clone()]), S::f32s::from_slice(simd, &ny[part.clone()]));
             let way = dx.mul_add(nx, dy.mul_add(ny, dz * S::f32s::from_slice(simd, &nz[part])));
-            sum += way / (squared * squared.sqrt()).max(tiny);
+            sum += way / squared.mul_add(squared.sqrt(), tiny);
         }
         sum.as_slice().iter().sum()
     }

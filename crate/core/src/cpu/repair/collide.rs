@@ -4,6 +4,7 @@
 //! find parts of the body that it never came near. Twin: shaders/collide.wgsl.
 
 use super::closest::{NOTHING, Posed, nearer};
+use crate::cpu::threads::of;
 use crate::cpu::{Cpu, Kernel};
 use crate::operation::Collide;
 use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask, dispatch};
@@ -24,8 +25,14 @@ pub const ELSEWHERE: f32 = 0.1;
 impl Kernel for Collide<&[f32], &mut [f32], &[u32]> {
     fn run(self, cpu: &mut Cpu) {
         let Self { exposed, normals, offsets, corners, seeds, positions, push } = self;
-        let body = &Posed::new(exposed, normals, offsets, corners, &mut cpu.rings);
-        dispatch!(cpu.level, simd => kernel(simd, positions, body, seeds, push));
+        let (level, rings) = (cpu.level, &mut cpu.rings);
+        let body = &dispatch!(level, simd => Posed::new(simd, exposed, normals, offsets, corners, rings));
+        let n = positions.len() / 3;
+        let width = seeds.len() / n.max(1);
+        cpu.threads.share(n, [push], &mut cpu.scratch, |rows, [push], _| {
+            let (positions, seeds) = (of(positions, &rows, 3), of(seeds, &rows, width));
+            dispatch!(level, simd => kernel(simd, positions, body, seeds, push));
+        });
     }
 }
 

@@ -2,7 +2,7 @@
 //! whose bodies were not compiled for the level: the search over the body took twice as long. Twin:
 //! shaders/collide.triangle.wgsl.
 
-use fearless_simd::{Select, Simd, SimdBase, SimdFloat, f32x8, mask32x8};
+use fearless_simd::{Bytes, Select, Simd, SimdBase, SimdFloat, SimdMask, f32x8, i32x8, mask32x8};
 use glam::Vec3;
 
 /// A triangle whose angle at a corner has a smaller squared sine is taken for its edges.
@@ -10,6 +10,9 @@ pub const SLIVER: f32 = 1e-6;
 
 /// Eight vectors, by axis.
 pub type Eight<S> = [f32x8<S>; 3];
+
+/// The same in memory.
+pub type Packed = [[f32; 8]; 3];
 
 /// The same vector eight times.
 #[inline(always)]
@@ -19,7 +22,7 @@ pub fn splat<S: Simd>(simd: S, vector: Vec3) -> Eight<S> {
 
 /// The ways from one point to eight.
 #[inline(always)]
-pub fn from<S: Simd>(simd: S, point: Vec3, eight: &[[f32; 8]; 3]) -> Eight<S> {
+pub fn from<S: Simd>(simd: S, point: Vec3, eight: &Packed) -> Eight<S> {
     let [x, y, z] = splat(simd, point);
     let [a, b, c] = eight;
     [f32x8::from_slice(simd, a) - x, f32x8::from_slice(simd, b) - y, f32x8::from_slice(simd, c) - z]
@@ -29,6 +32,29 @@ pub fn from<S: Simd>(simd: S, point: Vec3, eight: &[[f32; 8]; 3]) -> Eight<S> {
 #[inline(always)]
 pub fn dot<S: Simd>(a: Eight<S>, b: Eight<S>) -> f32x8<S> {
     a[0].mul_add(b[0], a[1].mul_add(b[1], a[2] * b[2]))
+}
+
+/// The least of eight numbers, none below zero, and its place. They are compared as integers, whose order is the same:
+/// the minimum of floats takes eight instructions in wasm.
+#[inline(always)]
+pub fn least<S: Simd>(simd: S, values: f32x8<S>) -> (usize, f32) {
+    let bits: i32x8<S> = values.bitcast();
+    let least = bits.reduce_min();
+    (bits.simd_eq(i32x8::splat(simd, least)).to_bitmask().trailing_zeros() as usize % 8, f32::from_bits(least as u32))
+}
+
+/// The place of the least of eight numbers of which one at least is zero or below.
+#[inline(always)]
+pub fn place_of_least<S: Simd>(simd: S, values: f32x8<S>) -> usize {
+    let bits: i32x8<S> = (-values).bitcast();
+    bits.simd_eq(i32x8::splat(simd, bits.reduce_max())).to_bitmask().trailing_zeros() as usize % 8
+}
+
+/// The greatest of eight numbers where it is above zero, else a number that is not.
+#[inline(always)]
+pub fn greatest<S: Simd>(values: f32x8<S>) -> f32 {
+    let bits: i32x8<S> = values.bitcast();
+    f32::from_bits(bits.reduce_max() as u32)
 }
 
 /// The points of triangles abc closest to p, from the ways from a to p, b and c: squared distance from it less that
@@ -59,8 +85,9 @@ fn spot<S: Simd>([bb, bc, cc, bp, cp]: [f32x8<S>; 5], b: f32x8<S>, c: f32x8<S>) 
 /// Share of the way along an edge to where a point is closest.
 #[inline(always)]
 fn along<S: Simd>(simd: S, way: f32x8<S>, squared: f32x8<S>) -> f32x8<S> {
-    let zero = f32x8::splat(simd, 0.0);
-    squared.simd_gt(zero).select((way / squared).max(zero).min(f32x8::splat(simd, 1.0)), zero)
+    let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
+    let inside = way.simd_lt(squared).select(way / squared, one);
+    (way.simd_gt(zero) & squared.simd_gt(zero)).select(inside, zero)
 }
 
 #[inline(always)]

@@ -83,8 +83,31 @@ impl Limits {
     }
 }
 
-/// Predicts `poses` in turn, `runs` times, and prints a row for each operation in the order of the pass.
+/// Predicts `poses` in turn, `runs` times, by the whole network, by the skeleton stream with the repair and without:
+/// prints a row for each operation in the order of the pass.
 pub fn run(model: &HostModel, poses: &[&[f32]], runs: usize) -> Result<()> {
+    let limits = Limits::measure(Level::new());
+    let (flops, bytes) = (limits.flops / 1e9, limits.bytes / 1e9);
+    println!("one thread can do {flops:.0} Gflop/s, and read {bytes:.1} GB/s from memory; medians of {runs}");
+    println!(
+        "limit: what the flops or the bytes take at that speed, whichever takes longer. Bytes that a cache still holds"
+    );
+    println!("come faster than from memory: shares above 100 % are possible");
+    let bare = HostModel { body: None, ..model.clone() };
+    let passes = [
+        ("the whole network", model, Streams::Both),
+        ("coarse: the skeleton stream and the repair", model, Streams::Skeleton),
+        ("coarse, of a model without a body", &bare, Streams::Skeleton),
+    ];
+    for (name, model, streams) in passes {
+        println!("\n{name}");
+        print(&time(model, streams, poses, runs)?, &limits);
+    }
+    Ok(())
+}
+
+/// The operations of one pass, timed in `runs` of them.
+fn time(model: &HostModel, streams: Streams, poses: &[&[f32]], runs: usize) -> Result<Vec<Row>> {
     let mut room = Activations::new(model, |_, length| vec![0.0; length]);
     let mut device = Watched { cpu: Cpu::new(), rows: Vec::new(), next: 0 };
     let mut confidence = Confidence::new(model);
@@ -93,21 +116,14 @@ pub fn run(model: &HostModel, poses: &[&[f32]], runs: usize) -> Result<()> {
         let share = confidence.as_mut().map_or(1.0, |confidence| confidence.of(&model.rig, &room.joints));
         (room.skeleton_share[0], room.mesh_share[0]) = (share, share);
         device.next = 0;
-        predict(&mut device, model, Streams::Both, &mut room);
+        predict(&mut device, model, streams, &mut room);
     }
-    print(&device.rows, &Limits::measure(Level::new()), runs);
-    Ok(())
+    Ok(device.rows)
 }
 
-fn print(rows: &[Row], limits: &Limits, runs: usize) {
+fn print(rows: &[Row], limits: &Limits) {
     let times: Vec<f64> = rows.iter().map(|row| super::median(&row.times)).collect();
     let whole: f64 = times.iter().sum();
-    let (flops, bytes) = (limits.flops / 1e9, limits.bytes / 1e9);
-    println!("one thread can do {flops:.0} Gflop/s, and read {bytes:.1} GB/s from memory; medians of {runs}");
-    println!(
-        "limit: what the flops or the bytes take at that speed, whichever takes longer. Bytes that a cache still holds"
-    );
-    println!("come faster than from memory: shares above 100 % are possible");
     println!("operation         ms  of all      Mflop      MB   Gflop/s     GB/s    limit, ms   share of it");
     for (row, time) in rows.iter().zip(&times) {
         let [by_flops, by_bytes] = [row.flops / limits.flops, row.bytes / limits.bytes];

@@ -9,7 +9,7 @@ use ctsn_train::judging::{Errors, FrameErrors, PoseErrors, Report, Statistic};
 use maud::{Markup, html};
 
 /// What each figure of the page means.
-const MEANINGS: [(&str, &str); 10] = [
+const MEANINGS: [(&str, &str); 13] = [
     (
         "E_dist",
         "Distance between predicted and simulated position, mean over the vertices. Given as mean ± standard deviation \
@@ -42,6 +42,22 @@ const MEANINGS: [(&str, &str); 10] = [
       30 frames a second, with all joints turning evenly. The repair of penetration must not make cloth tremble.",
     ),
     (
+        "bending, curvature, fine",
+        "Mean angle between neighbouring triangles, less that of the garment as it was cut; root mean square of the way \
+      along the normal from a vertex to the mean of its neighbours; the same of what ten steps of smoothing take \
+      away. All over the simulation's. Correlation: of the last with the simulation's, vertex by vertex.",
+    ),
+    (
+        "strain, stretch, shear, energy",
+        "Edges beside their lengths in the garment as it was cut; threads of warp and weft beside theirs, and the \
+      cosine between them; elastic energy, and what hanging higher than the simulation is worth, over the \
+      simulation's elastic energy.",
+    ),
+    (
+        "coarse, middle, fine",
+        "E_dist of what 40 steps of smoothing leave of both, of what 10 leave beyond it, and of what 10 take away.",
+    ),
+    (
         "mm per metre",
         "E_dist per metre of the greatest extent of the figure in its canonical pose (its height, if it stands). It \
       compares characters of different size.",
@@ -67,6 +83,9 @@ pub fn report(report: &Report, training: &[Chart], gallery: &Gallery, facts: &[(
         (tiles(report))
         h2 { "Ways to predict" }
         div class="first" { (ways(report)) }
+        h2 { "Folds" }
+        p class="soft" { "Ratios to the simulation: 1 is as folded as it; less is smooth, more is noise." }
+        (folds(report))
         @if !curves.is_empty() {
             h2 { "Training" }
             div class="charts" { @for chart in &curves { div { (chart) } } }
@@ -138,15 +157,33 @@ fn ways(report: &Report) -> Markup {
         ];
         (name.to_owned(), cells.map(Cell::Text).into())
     };
-    let rows = [
-        ("network", Some(&report.network)),
-        ("network, not repaired", report.unrepaired.as_ref()),
-        ("skeleton stream alone", Some(&report.skeleton)),
-        ("plain skinning", Some(&report.skinning)),
-        ("simulation", Some(&report.truth)),
+    table(&heads, &report.ways().map(row).collect::<Vec<_>>())
+}
+
+fn folds(report: &Report) -> Markup {
+    let heads = [
+        "",
+        "bending",
+        "curvature",
+        "fine",
+        "correlation",
+        "strain, %",
+        "stretch, %",
+        "shear, %",
+        "energy",
+        "E_dist coarse, mm",
+        "middle",
+        "fine",
     ];
-    let rows: Vec<_> = rows.into_iter().filter_map(|(name, errors)| Some(row((name, errors?)))).collect();
-    table(&heads, &rows)
+    let row = |(name, errors): (&str, &Errors)| {
+        let folds = errors.folds;
+        let ratios = [folds.bending, folds.curvature, folds.fine, folds.correlation].map(|ratio| format!("{ratio:.3}"));
+        let shares = [folds.strain, folds.stretch, folds.shear].map(|share| format!("{:.2}", 100.0 * share));
+        let bands = folds.bands.map(|band| format!("{:.2}", 1e3 * band));
+        let cells = ratios.into_iter().chain(shares).chain([format!("{:.2}", folds.energy)]).chain(bands);
+        (name.to_owned(), cells.map(Cell::Text).collect())
+    };
+    table(&heads, &report.ways().map(row).collect::<Vec<_>>())
 }
 
 /// Chart of the share of frames at or below an error, for the network and for plain skinning.
