@@ -6,25 +6,24 @@ mod level;
 pub mod noise;
 mod request;
 mod shard;
+mod teacher;
 #[cfg(test)]
 mod tests;
 mod timing;
 
 use crate::dataset::{Record, Sample, Setup, Split, mixed_path, pose_path, twin_path};
-use crate::judging::check_same;
+use crate::judging::check_joints;
 use crate::{Error, Result};
 use ctsn_cloth::simulate::Simulator;
-use ctsn_core::cpu::Level;
-use ctsn_core::model::HostModel;
-use ctsn_core::{Predictor, Streams};
 use ctsn_rig::mixed::{has_limbs, mixed};
-use ctsn_rig::path::{body_frame, is_sound};
+use ctsn_rig::path::is_sound;
 use ctsn_rig::{Character, Pose, joints, numbers, vertices};
 use glam::DVec3;
 use rayon::prelude::*;
 pub use request::Request;
 pub use shard::Shard;
 use std::path::{Path, PathBuf};
+use teacher::Teacher;
 pub use timing::Log;
 use timing::{Stopwatch, Timing};
 
@@ -52,6 +51,7 @@ pub struct Run<'a> {
     request: Request<'a>,
     folder: PathBuf,
     simulator: Simulator,
+    teacher: Option<Teacher<'a>>,
     /// `T_C` as the setup keeps it, metres [n].
     template: Vec<DVec3>,
     tasks: Vec<Task>,
@@ -78,26 +78,27 @@ impl<'a> Run<'a> {
         }
         let mut wanted = request.setup();
         if let Some(teacher) = request.teacher {
-            check_same(teacher, &wanted)?;
+            check_joints(teacher, &wanted)?;
         }
         let settings = request.settings.clone();
         let simulator = Simulator::new(request.character, request.garment, request.material.1, settings)?;
-        let setup = match Setup::read(folder)? {
+        let found = Setup::read(folder)?;
+        match &found {
             Some(found) => {
                 found.check_same(&wanted, folder)?;
-                found
+                wanted.template.clone_from(&found.template);
             }
-            None => {
-                wanted.template = numbers(&simulator.drape()?);
-                wanted.write(folder)?;
-                wanted
-            }
-        };
-        let template = vertices(&setup.template);
+            None => wanted.template = numbers(&simulator.drape()?),
+        }
+        let teacher = request.teacher.map(|model| Teacher::new(model, &wanted)).transpose()?;
+        if found.is_none() {
+            wanted.write(folder)?;
+        }
+        let template = vertices(&wanted.template);
         let mut tasks = tasks(&request, poses, folder);
         let all = tasks.len();
         tasks.retain(|task| !task.path.exists());
-        Ok(Self { found: all - tasks.len(), request, folder: folder.to_owned(), simulator, template, tasks })
+        Ok(Self { found: all - tasks.len(), request, folder: folder.to_owned(), simulator, teacher, template, tasks })
     }
 
     /// Poses, twins and mixed poses left to simulate.
@@ -118,9 +119,9 @@ impl<'a> Run<'a> {
                 Kind::Twin => noise::turned(character, frame(), task.clip, task.frame),
                 Kind::Mixed => mixed(character, &learned, task.frame),
             };
-            let outcome = match self.request.teacher {
+            let outcome = match &self.teacher {
                 None => self.simulator.simulate(&self.template, &pose),
-                Some(teacher) => match predicted(teacher, character, &pose) {
+                Some(teacher) => match teacher.predict(character, &pose, &self.template) {
                     Ok(start) => self.simulator.relax(&self.template, &pose, &start),
                     // Far outside of what it has seen a model may overflow; the simulator says so of its pose.
                     Err(_) => self.simulator.relax(&self.template, &pose, &[]),
@@ -135,14 +136,6 @@ impl<'a> Run<'a> {
         };
         self.tasks.par_iter().with_max_len(1).try_for_each(run)
     }
-}
-
-/// What `model` predicts for `pose`, body frame [n].
-fn predicted(model: &HostModel, character: &Character, pose: &Pose) -> Result<Vec<DVec3>> {
-    let mut predictor = Predictor::from_model(model.clone(), Level::new());
-    predictor.predict_row_major(&joints(pose), Streams::Both)?;
-    let into = body_frame(character, pose);
-    Ok(vertices(predictor.positions()).into_iter().map(|position| into.transform_point3(position)).collect())
 }
 
 /// The frames to train on. Mixed poses are made of these alone, so that unseen frames stay unseen.

@@ -29,6 +29,7 @@ mod way;
 #[cfg(test)]
 mod tests;
 
+pub use coarse::Embedding;
 pub use distance::{BodyDistance, felt};
 pub use elastic::{Elastic, Hinge, Membrane, Triangle};
 pub use material::{Fabric, GRAVITY, Material};

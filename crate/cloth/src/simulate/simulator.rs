@@ -57,7 +57,7 @@ impl Simulator {
         let fine = level(&garment.mesh, &warp, &settings.attached)?;
         let coarse = fine.cloth.is_fine().then(|| Coarse::new(&garment.mesh, &warp));
         let coarse = coarse.map(|coarse| {
-            let level = level(&coarse.mesh, &coarse.warp, &coarse.restrict_vertices(&settings.attached))?;
+            let level = level(&coarse.embedding.mesh, &coarse.warp, &coarse.restrict_vertices(&settings.attached))?;
             Ok::<_, Error>((coarse, level))
         });
         let coarse = coarse.transpose()?;

@@ -2,13 +2,13 @@
 //! relaxed; the fine one is laid on it and relaxed from there. A Newton iteration costs five times as much at 6,000
 //! vertices as at 1,500, and most of the iterations were spent on the way.
 
+mod embedding;
 mod thin;
 
-use ctsn_core::topology::Graph;
 use ctsn_rig::Mesh;
-use ctsn_rig::mesh::triangle::closest;
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 
+pub use self::embedding::Embedding;
 use self::thin::{Thinned, thin};
 
 /// Vertices of the coarse garment.
@@ -16,14 +16,11 @@ const COARSE: usize = 1500;
 
 /// A thinned garment and how the fine one lies on it.
 pub(super) struct Coarse {
-    pub mesh: Mesh,
+    pub embedding: Embedding,
     /// Direction of the warp per triangle of it.
     pub warp: Vec<DVec3>,
     /// The fine vertex that each of its vertices is.
     kept: Vec<usize>,
-    /// Three vertices of it and their barycentric weights, for each fine vertex.
-    bound: Vec<[(usize, f64); 3]>,
-    rings: Graph<Vec<u32>>,
 }
 
 impl Coarse {
@@ -35,26 +32,19 @@ impl Coarse {
         for (index, triangle) in mesh.triangles.iter().enumerate() {
             triangle.iter().for_each(|&v| fans[v as usize].push(index));
         }
-        let bind = |(point, &into): (&DVec3, &u32)| {
-            // Near along the cloth: the nearest triangle in space may be of another layer.
-            let near = rings.of(into as usize).iter().chain([&into]).flat_map(|&v| &fans[v as usize]);
-            let place = near.map(|&t| {
-                let corners = mesh.triangles[t].map(|v| mesh.positions[v as usize]);
-                let weights = closest(*point, corners);
-                let at: DVec3 = corners.iter().zip(weights).map(|(corner, weight)| *corner * weight).sum();
-                (at.distance_squared(*point), t, weights)
-            });
-            let (_, t, weights) = place.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))).unwrap_or_default();
-            [0, 1, 2].map(|k| (mesh.triangles[t][k] as usize, weights[k]))
+        // Near along the cloth: the nearest triangle in space may be of another layer.
+        let near = |vertex: usize| {
+            let into = into[vertex];
+            rings.of(into as usize).iter().chain([&into]).flat_map(|&v| fans[v as usize].iter().copied()).collect()
         };
-        let bound = fine.positions.iter().zip(&into).map(bind).collect();
+        let embedding = Embedding::among(mesh.clone(), &fine.positions, near);
         let mut around = vec![DVec3::ZERO; fine.positions.len()];
         for (triangle, warp) in fine.triangles.iter().zip(warp) {
             triangle.iter().for_each(|&v| around[v as usize] += *warp);
         }
         let mean = |t: &[u32; 3]| t.iter().map(|&v| around[kept[v as usize]]).sum::<DVec3>();
         let warp = mesh.triangles.iter().map(|t| mean(t).try_normalize().unwrap_or(DVec3::Y)).collect();
-        Self { mesh, warp, kept, bound, rings }
+        Self { embedding, warp, kept }
     }
 
     /// What the coarse garment has of a fine state.
@@ -68,50 +58,10 @@ impl Coarse {
         (0..).zip(&self.kept).filter(chosen).map(|(coarse, _)| coarse).collect()
     }
 
-    /// The fine garment on a coarse state `x`, each vertex where its three coarse ones, each turned as its ring is
-    /// turned from the template, take it (embedded deformation, Sumner et al. 2007). So the fine drape's own folds come
-    /// along, and the surface bends smoothly across the coarse edges.
+    /// The fine garment on a coarse state `x`. So the fine drape's own folds come along.
     pub fn prolong(&self, template: &[DVec3], x: &[DVec3]) -> Vec<DVec3> {
-        let rest = self.restrict(template);
-        let normals = [&rest[..], x].map(|state| self.mesh.normals(state));
-        let turn = |v: usize| {
-            let legs = self.rings.of(v).iter().map(|&w| w as usize);
-            let (sum, square) = legs.fold((DMat3::ZERO, 0.0), |(sum, square), w| {
-                let (from, to) = (rest[w] - rest[v], x[w] - x[v]);
-                (sum + dyad(to, from), square + from.length_squared())
-            });
-            nearest_rotation(sum + dyad(normals[1][v], normals[0][v]) * (0.5 * square))
-        };
-        let turns: Vec<DMat3> = (0..x.len()).map(turn).collect();
-        let place = |(start, bound): (&DVec3, &[(usize, f64); 3])| {
-            bound.iter().map(|&(v, weight)| (x[v] + turns[v] * (*start - rest[v])) * weight).sum()
-        };
-        template.iter().zip(&self.bound).map(place).collect()
+        self.embedding.lay([template, &self.restrict(template)], x)
     }
-}
-
-/// `a bᵀ`.
-fn dyad(a: DVec3, b: DVec3) -> DMat3 {
-    DMat3::from_cols(a * b.x, a * b.y, a * b.z)
-}
-
-/// The rotation nearest to a matrix (Higham's iteration for the polar decomposition); none where it has no inverse or
-/// turns inside out.
-fn nearest_rotation(matrix: DMat3) -> DMat3 {
-    let size = matrix.to_cols_array().iter().map(|c| c * c).sum::<f64>().sqrt();
-    let mut turn = matrix * (1.0 / size.max(f64::MIN_POSITIVE));
-    for _ in 0..30 {
-        let det = turn.determinant();
-        if det.is_nan() || det < 1e-9 {
-            return DMat3::IDENTITY;
-        }
-        let next = (turn + turn.inverse().transpose()) * 0.5;
-        if next.abs_diff_eq(turn, 1e-12) {
-            return next;
-        }
-        turn = next;
-    }
-    turn
 }
 
 #[cfg(test)]
@@ -121,10 +71,22 @@ mod tests {
     use glam::{DAffine3, DQuat};
 
     #[test]
+    fn cloth_is_laid_on_another_mesh_of_it() {
+        let (fine, coarse) = (skirt(96, 30), skirt(30, 9));
+        let embedding = Embedding::new(coarse.clone(), &fine);
+        assert!(embedding.distance(&fine.positions) < 0.1);
+        // A wave along the height, of which a coarse mesh knows as much as a fine one.
+        let wave = |x: &[DVec3]| x.iter().map(|p| *p + 0.02 * DVec3::X * (9.0 * p.y).sin()).collect::<Vec<_>>();
+        let laid = embedding.lay([&fine.positions, &coarse.positions], &wave(&coarse.positions));
+        let furthest = laid.iter().zip(wave(&fine.positions)).map(|(a, b)| a.distance(b)).fold(0.0, f64::max);
+        assert!(furthest < 2e-3, "{furthest}");
+    }
+
+    #[test]
     fn a_fine_cloth_goes_where_its_coarse_one_goes() {
         let fine = skirt(96, 30);
         let coarse = Coarse::new(&fine, &vec![DVec3::Y; fine.triangles.len()]);
-        assert!(coarse.mesh.positions.len() <= COARSE && coarse.warp.iter().all(|warp| *warp == DVec3::Y));
+        assert!(coarse.embedding.mesh.positions.len() <= COARSE && coarse.warp.iter().all(|warp| *warp == DVec3::Y));
         let turn = DAffine3::from_rotation_translation(DQuat::from_rotation_x(2.0), DVec3::new(1.0, -2.0, 0.5));
         let moved = |x: &[DVec3]| x.iter().map(|p| turn.transform_point3(*p)).collect::<Vec<_>>();
         let laid = coarse.prolong(&fine.positions, &moved(&coarse.restrict(&fine.positions)));
