@@ -236,6 +236,27 @@ fn a_bake_keeps_to_its_garment() {
     );
 }
 
+#[test]
+fn a_bake_learns_from_paths_and_then_from_its_own_predictions() {
+    let folder = Folder::new();
+    folder.accepts("character sphere -o sphere.glb");
+    let bake = "bake sphere.glb --kind sheet --vertices 500 --poses 70 --epochs 2 -o out.safetensors";
+    let told = folder.accepts(bake);
+    for part in ["out.safetensors: a first model", "unseen frames", "plain skinning"] {
+        assert!(told.contains(part), "wanted {part:?} in {told}");
+    }
+    let teacher = |data: &str| {
+        let setup = ctsn_train::dataset::Setup::read(&folder.path(data)).expect("readable").expect("a setup");
+        setup.description.teacher
+    };
+    assert!(teacher("out.work/first").is_none() && teacher("out.work").is_some());
+    let [first, model] = ["out.work/first.safetensors", "out.safetensors"].map(|name| std::fs::read(folder.path(name)));
+    assert_ne!(first.expect("a model"), *model.as_ref().expect("a model"), "the second learned from other poses");
+    let again = folder.accepts(bake);
+    assert!(again.contains("0 poses to simulate") && again.contains("has been trained so already"), "{again}");
+    assert_eq!(std::fs::read(folder.path("out.safetensors")).ok(), model.ok());
+}
+
 /// Every file of a dataset that the machine has no say in, by its path.
 fn poses_of(folder: &std::path::Path) -> std::collections::BTreeMap<String, Vec<u8>> {
     let mut files = std::collections::BTreeMap::new();

@@ -23,6 +23,7 @@ use rayon::prelude::*;
 pub use request::Request;
 pub use shard::Shard;
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 use teacher::Teacher;
 pub use timing::Log;
 use timing::{Stopwatch, Timing};
@@ -106,12 +107,15 @@ impl<'a> Run<'a> {
         self.tasks.len()
     }
 
-    /// Simulates what is left. `progress(record, kind)` is called after every pose.
-    pub fn simulate(&self, progress: impl Fn(&Record, Kind) + Sync) -> Result<()> {
+    /// Simulates what is left, beginning no pose after `until`. `progress(record, kind)` is called after every pose.
+    pub fn simulate(&self, until: Option<Instant>, progress: impl Fn(&Record, Kind) + Sync) -> Result<()> {
         let timing = Timing::open(&self.folder, self.request.shard)?;
         let character = self.request.character;
         let learned = learned(character);
         let run = |task: &Task| -> Result<()> {
+            if until.is_some_and(|until| Instant::now() >= until) {
+                return Ok(());
+            }
             let start = Stopwatch::start();
             let frame = || &character.clips[task.clip].poses[task.frame];
             let pose = match task.kind {
@@ -148,22 +152,27 @@ fn learned(character: &Character) -> Vec<&Pose> {
     frames.filter(|pose| is_sound(character, pose)).collect()
 }
 
-/// The poses and twins of the request's shard, in [`order`], then its mixed poses.
+/// The poses and twins of the request's shard, in [`order`], its mixed poses evenly among them.
 fn tasks(request: &Request, poses: usize, folder: &Path) -> Vec<Task> {
     let clips = request.character.clips.iter().enumerate();
     let frames: Vec<_> = clips.flat_map(|(clip, sampled)| (0..sampled.poses.len()).map(move |f| (clip, f))).collect();
-    let chosen = order(poses).into_iter().take(request.poses.unwrap_or(poses)).enumerate();
+    let chosen: Vec<usize> = order(poses).into_iter().take(request.poses.unwrap_or(poses)).collect();
+    let held = |count: usize| (0..count).filter(|number| request.shard.holds(*number));
+    // Each with the share of its kind that comes before.
     let mut tasks = Vec::new();
-    for (index, at) in chosen.filter(|(index, _)| request.shard.holds(*index)) {
-        let (clip, frame) = frames[at];
-        tasks.push(Task { kind: Kind::Frame, clip, frame, path: pose_path(folder, clip, frame) });
+    for index in held(chosen.len()) {
+        let ((clip, frame), share) = (frames[chosen[index]], index as f64 / chosen.len() as f64);
+        tasks.push((share, Task { kind: Kind::Frame, clip, frame, path: pose_path(folder, clip, frame) }));
         if index < request.twins {
-            tasks.push(Task { kind: Kind::Twin, clip, frame, path: twin_path(folder, clip, frame) });
+            tasks.push((share, Task { kind: Kind::Twin, clip, frame, path: twin_path(folder, clip, frame) }));
         }
     }
-    let mixed = |frame| Task { kind: Kind::Mixed, clip: 0, frame, path: mixed_path(folder, frame) };
-    tasks.extend((0..request.mixed).filter(|number| request.shard.holds(*number)).map(mixed));
-    tasks
+    for frame in held(request.mixed) {
+        let task = Task { kind: Kind::Mixed, clip: 0, frame, path: mixed_path(folder, frame) };
+        tasks.push((frame as f64 / request.mixed as f64, task));
+    }
+    tasks.sort_by(|a, b| a.0.total_cmp(&b.0));
+    tasks.into_iter().map(|(_, task)| task).collect()
 }
 
 /// Indices below `count`, ordered so that the first few, however many, are evenly spread: by the fractional part of

@@ -9,6 +9,7 @@ use ctsn_rig::gltf;
 use ctsn_train::ground_truth::{Kind, Request, Run, Shard};
 use ctsn_train::report::Report;
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 /// Simulate a garment on every frame of a character's clips
 ///
@@ -71,16 +72,20 @@ pub struct Options {
 }
 
 pub fn run(arguments: &Arguments) -> Result<()> {
+    along(&character(&arguments.character, &arguments.options)?, arguments, None)
+}
+
+/// Simulates the clips of this form of the character, beginning no pose after `until`.
+pub fn along(character: &Character, arguments: &Arguments, until: Option<Instant>) -> Result<()> {
     let Arguments { options, output, shard, .. } = arguments;
     let material = Material::named(&options.material)?;
-    let character = character(&arguments.character, options)?;
-    let (garment, warnings) = garment::load(&arguments.garment, &character)?;
+    let (garment, warnings) = garment::load(&arguments.garment, character)?;
     warnings.iter().for_each(|warning| eprintln!("  {}: {warning}", arguments.garment.display()));
     let teacher = options.from.as_deref().map(model).transpose()?;
     let names = [file_name(&arguments.character), file_name(&arguments.garment)];
     println!("{} on {}: {} vertices", names[1], names[0], garment.mesh.positions.len());
     let request = Request {
-        character: &character,
+        character,
         garment: &garment,
         names: names.each_ref().map(String::as_str),
         material: (&options.material, material),
@@ -93,7 +98,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     };
     let work = Run::new(request, output)?;
     println!("{} poses to simulate, {} found done", work.left(), work.found);
-    follow(&work, &character)?;
+    follow(&work, character, until)?;
     let report = Report::new(output)?;
     report.write(output)?;
     println!("{report}");
@@ -104,7 +109,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
 }
 
 /// Reads a character with the chosen clips.
-fn character(path: &Path, options: &Options) -> Result<Character> {
+pub fn character(path: &Path, options: &Options) -> Result<Character> {
     if !(options.rate > 0.0 && options.rate <= 1000.0) {
         bail!("--rate: wanted more than 0 and at most 1000 poses per second, found {}", options.rate);
     }
@@ -118,10 +123,10 @@ fn character(path: &Path, options: &Options) -> Result<Character> {
 }
 
 /// Simulates with a progress bar; in a log file, with a line now and then.
-fn follow(work: &Run, character: &Character) -> Result<()> {
+fn follow(work: &Run, character: &Character, until: Option<Instant>) -> Result<()> {
     let bar = bar(work.left(), "simulate");
     let every = (work.left() as u64 / 20).max(1);
-    work.simulate(|record, kind| {
+    work.simulate(until, |record, kind| {
         bar.inc(1);
         if let Some(reason) = &record.rejected {
             let frame = record.frame;

@@ -32,7 +32,7 @@ pub struct Arguments {
 #[derive(clap::Args, Clone)]
 pub struct Training {
     #[command(flatten)]
-    settings: Settings,
+    pub settings: Settings,
     #[command(flatten)]
     network: Architecture,
     /// Parts of the network to leave out, for ablations: skeleton,mesh,weights
