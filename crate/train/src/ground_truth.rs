@@ -4,6 +4,7 @@
 
 mod level;
 pub mod noise;
+mod poses;
 mod request;
 mod shard;
 mod teacher;
@@ -19,6 +20,7 @@ use ctsn_rig::mixed::{has_limbs, mixed};
 use ctsn_rig::path::is_sound;
 use ctsn_rig::{Character, Pose, joints, numbers, vertices};
 use glam::DVec3;
+pub use poses::unsimulated;
 use rayon::prelude::*;
 pub use request::Request;
 pub use shard::Shard;

@@ -122,7 +122,8 @@ impl Steps<'_> {
     fn train(&self, dataset: &Path, output: &Path, share: f64) -> Result<()> {
         let mut training = self.arguments.training.clone();
         training.settings.budget = self.budget.map(|budget| budget.mul_f64(share));
-        train::run(&train::Arguments { dataset: dataset.to_owned(), output: output.to_owned(), training })
+        let (dataset, output) = (dataset.to_owned(), output.to_owned());
+        train::run(&train::Arguments { dataset, garment: None, self_supervised: false, output, training })
     }
 }
 

@@ -6,7 +6,8 @@ use ctsn_cloth::garment;
 use ctsn_cloth::simulate::{Material, Settings};
 use ctsn_rig::Character;
 use ctsn_rig::gltf;
-use ctsn_train::ground_truth::{Kind, Request, Run, Shard};
+use ctsn_train::dataset::Dataset;
+use ctsn_train::ground_truth::{self, Kind, Request, Run, Shard};
 use ctsn_train::report::Report;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -40,11 +41,14 @@ pub struct Arguments {
     pub options: Options,
 }
 
+/// Poses per second of the clips, where nothing else is asked for.
+const RATE: f64 = 10.0;
+
 /// Which poses, of what cloth.
 #[derive(clap::Args, Clone)]
 pub struct Options {
     /// Poses per second sampled from every clip
-    #[arg(long, default_value_t = 10.0)]
+    #[arg(long, default_value_t = RATE)]
     pub rate: f64,
     /// Simulate only this many of the frames, evenly spread over the clips; a greater number adds to them. Default: all
     #[arg(long, value_name = "N")]
@@ -106,6 +110,28 @@ pub fn along(character: &Character, arguments: &Arguments, until: Option<Instant
         bail!("no pose converged; the reasons stand above");
     }
     Ok(())
+}
+
+/// The frames of a character's clips in a garment of cotton, for a training without simulated poses.
+pub fn unsimulated(character: &Path, garment: &Path) -> Result<Dataset> {
+    let names = [file_name(character), file_name(garment)];
+    let character = gltf::read_character(character, RATE)?;
+    let (cloth, warnings) = garment::load(garment, &character)?;
+    warnings.iter().for_each(|warning| eprintln!("  {}: {warning}", garment.display()));
+    println!("{} on {}: {} vertices; draping it", names[1], names[0], cloth.mesh.positions.len());
+    let request = Request {
+        character: &character,
+        garment: &cloth,
+        names: names.each_ref().map(String::as_str),
+        material: ("cotton", Material::named("cotton")?),
+        settings: Settings { attached: cloth.pins.clone(), ..Settings::default() },
+        teacher: None,
+        shard: Shard::WHOLE,
+        poses: None,
+        mixed: 0,
+        twins: 0,
+    };
+    Ok(ground_truth::unsimulated(&request)?)
 }
 
 /// Reads a character with the chosen clips.

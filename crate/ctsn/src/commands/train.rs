@@ -1,6 +1,6 @@
 //! `ctsn train`: the network from a dataset.
 
-use super::{bar, file_name, one_of};
+use super::{bar, file_name, one_of, simulate};
 use anyhow::{Context, Result, anyhow};
 use ctsn_core::model::{Body, Cut, HostModel, STEPS, Storage};
 use ctsn_rig::file;
@@ -19,8 +19,16 @@ use std::path::{Path, PathBuf};
 /// stored anew from what was learned (MODEL.f32.safetensors), without training.
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// Dataset folder, as `ctsn simulate` leaves it
+    /// Dataset folder, as `ctsn simulate` leaves it; with --self-supervised, the character (glTF)
     pub dataset: PathBuf,
+    /// With --self-supervised, the garment (glTF)
+    #[arg(requires = "self_supervised")]
+    pub garment: Option<PathBuf>,
+    /// Learn without simulated poses: by the energy of the predicted cloth, its stretch, bending and weight, and of its
+    /// contact with the body, in the frames of the character's clips and in poses mixed of them. Such cloth lies
+    /// smoother than simulated cloth
+    #[arg(long, requires = "garment")]
+    pub self_supervised: bool,
     /// Model file to write (safetensors)
     #[arg(short, long)]
     pub output: PathBuf,
@@ -48,8 +56,14 @@ const STORAGES: &[(&str, &str, Storage)] =
 
 pub fn run(arguments: &Arguments) -> Result<()> {
     let Arguments { output, training: asked, .. } = arguments;
-    let dataset = Dataset::read(&arguments.dataset)?;
-    let slices = training::slices(&dataset)?;
+    let dataset = match &arguments.garment {
+        Some(garment) => simulate::unsimulated(&arguments.dataset, garment)?,
+        None => Dataset::read(&arguments.dataset)?,
+    };
+    let slices = match arguments.self_supervised {
+        true => Slices { train: dataset.samples.iter().collect(), mixed: 0, validation: Vec::new() },
+        false => training::slices(&dataset)?,
+    };
     let files = Files { checkpoint: output.with_extension("checkpoint"), curve: output.with_extension("curve.csv") };
     // Before the training: an unusable body must not be found out after hours.
     let body = body(&dataset.setup, &slices.train)?;
@@ -70,7 +84,8 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         (End::Diverged(error), None) => Err(error.into()),
         (_, None) => Err(anyhow!("no epoch was trained: wanted at least one")),
         (end, Some((best, model))) => {
-            let silent = training::is_mesh_silent(&model, &slices.validation)?;
+            let seen = if arguments.self_supervised { &slices.train } else { &slices.validation };
+            let silent = training::is_mesh_silent(&model, seen)?;
             // A training that diverged may be tried again.
             let key = Some(key).filter(|_| !matches!(end, End::Diverged(_)));
             let summary = asked.summary(&dataset.setup, &slices, &trainer, &best, key);
@@ -137,7 +152,8 @@ impl Training {
             model.sizes.vertices
         );
         let settings = Settings { variant, ..self.settings };
-        Ok(Trainer::new(model, setup, &slices.train, settings)?)
+        let trainer = if slices.validation.is_empty() { Trainer::self_supervised } else { Trainer::new };
+        Ok(trainer(model, setup, &slices.train, settings)?)
     }
 
     /// What the model file says of its training. Nothing in it depends on the time of day.
@@ -155,8 +171,8 @@ impl Training {
             "seed": self.settings.seed,
             "loss_metres": best.loss("fine"),
             "untrained_validation_metres": trainer.untrained,
-            "validation_metres": best.distance,
-            "validation_degrees": best.normal,
+            "validation_metres": trainer.untrained.map(|_| best.distance),
+            "validation_degrees": trainer.untrained.map(|_| best.normal),
             "key": key,
             "ctsn": env!("CARGO_PKG_VERSION"),
         });
@@ -198,6 +214,10 @@ fn fit(trainer: &mut Trainer, slices: &Slices, files: &Files) -> Result<End> {
 
 fn errors(row: &Row) -> String {
     let Row { distance, normal, .. } = row;
+    if row.loss("energy").is_some() {
+        let losses = row.losses.iter().map(|(name, value)| format!("{name} {value:.3} J"));
+        return losses.collect::<Vec<_>>().join(", ");
+    }
     let loss = row.loss("fine").map_or(String::new(), |fine| format!("loss {:.2} mm, ", fine * 1e3));
     format!("{loss}E_dist {:.2} mm, E_norm {normal:.2}°", distance * 1e3)
 }

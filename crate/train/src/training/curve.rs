@@ -13,7 +13,7 @@ pub struct Row {
     pub epoch: usize,
     /// Name and mean of each loss over the epoch.
     pub losses: Vec<(String, f32)>,
-    /// E_dist on the validation slice, metres.
+    /// E_dist on the validation slice, metres; the weighted sum of the losses in a training without truth.
     pub distance: f32,
     /// E_norm on the validation slice, degrees.
     pub normal: f32,
