@@ -17,6 +17,11 @@ export default defineConfig({
         resolve: { alias: [{ find: /^three$/, replacement: at('node_modules/three-oldest/build/three.module.js') }] },
         test: { name: 'oldest three', include: ['web/tests/three*.test.ts'], env: { CTSN_THREE: 'oldest' } },
       },
+      // The same where the engine has no relaxed SIMD.
+      {
+        extends: true,
+        test: { name: 'simd128', include: ['web/tests/{model,quality,allocation}.test.ts'], setupFiles: ['web/tests/simd128.ts'] },
+      },
       // The exported network, in another runtime on Node.
       { extends: true, test: { name: 'onnx', include: ['tests/onnx/*.test.ts'] } },
       // The demo site in headless Chromium, and the module as it is shipped.

@@ -1,15 +1,27 @@
 // Rust -> wasm -> web/src/glue -> web/dist: the npm package `ctsn`, rebuilt only where something changed.
-import { cpSync, existsSync, mkdirSync, readFileSync, renameSync, writeFileSync } from 'node:fs';
+import { copyFileSync, cpSync, existsSync, mkdirSync, readFileSync, renameSync, writeFileSync } from 'node:fs';
 import { createHash } from 'node:crypto';
-import { all, at, need, say } from './step.mjs';
+import { all, at, need, say, Stop } from './step.mjs';
 import { ensurePackages, ensureRust } from './toolchain.mjs';
 
 const glue = at('web', 'src', 'glue');
 
-/** The processor's module and WebGPU's: package, name of the glue. */
+/**
+ * What of WebAssembly the modules use, and where cargo builds what uses it: a folder for each, because cargo links anew
+ * in a folder whose flags change. Beside the flags of .cargo/config.toml.
+ */
+const simd128 = { folder: at('target'), cargo: [], optimiser: [] };
+export const relaxedSimd = {
+  folder: at('target', 'relaxed'),
+  cargo: ['--target-dir', at('target', 'relaxed'), '--config', "target.wasm32-unknown-unknown.rustflags = ['-Ctarget-feature=+relaxed-simd']"],
+  optimiser: ['--enable-relaxed-simd'],
+};
+
+/** The processor's module, the same for relaxed SIMD, and WebGPU's: package, name of the glue and of the module. */
 const modules = [
-  { package: 'ctsn-wasm', name: 'ctsn' },
-  { package: 'ctsn-wasm-gpu', name: 'ctsn_gpu' },
+  { package: 'ctsn-wasm', glue: 'ctsn', name: 'ctsn', features: simd128 },
+  { package: 'ctsn-wasm', glue: 'ctsn', name: 'ctsn_relaxed', features: relaxedSimd },
+  { package: 'ctsn-wasm-gpu', glue: 'ctsn_gpu', name: 'ctsn_gpu', features: simd128 },
 ];
 
 /**
@@ -23,6 +35,12 @@ const optimise = ['-O3', '-ocimfs', '1', '--enable-simd', '--enable-bulk-memory'
 /** What cargo is told to build or run scripts/bindgen. */
 const bindgen = ['--package', 'ctsn-bindgen', '--profile', 'tool', '--bin', 'bindgen'];
 
+/** Compiles to WebAssembly whatever has those features. */
+function compile(features) {
+  const packages = modules.filter((module) => module.features === features).flatMap((module) => ['--package', module.package]);
+  return need('cargo', ['build', ...packages, '--target', 'wasm32-unknown-unknown', '--profile', 'wasm', ...features.cargo]);
+}
+
 /**
  * Compiles crate/wasm and crate/wasm-gpu and makes web/src/glue from them; whatever of tools and npm packages is
  * missing, at the same time.
@@ -31,26 +49,28 @@ export async function buildWasm() {
   await ensureRust();
   say('compiling the network to WebAssembly');
   await all([
-    need('cargo', ['build', ...modules.flatMap((module) => ['--package', module.package]), '--target', 'wasm32-unknown-unknown', '--profile', 'wasm']),
-    need('cargo', ['build', ...bindgen], { capture: true }),
+    compile(simd128).then(() => need('cargo', ['build', ...bindgen], { capture: true })),
+    compile(relaxedSimd),
     ensurePackages(),
   ]);
   await all(modules.map(bind));
+  const [one, other] = [simd128, relaxedSimd].map(({ folder }) => readFileSync(`${folder}/glue/ctsn.js`, 'utf8'));
+  if (one !== other) throw new Stop('the glue of ctsn.wasm and of ctsn_relaxed.wasm differs: the package has the first for both.');
 }
 
 /** Glue and optimised module from a compiled one, where that or what is done to it has changed. */
-async function bind({ package: crate, name }) {
-  const folder = at('target', 'wasm32-unknown-unknown', 'wasm');
-  const [compiled, stamp] = [`${folder}/${crate.replaceAll('-', '_')}.wasm`, `${folder}/${name}.sha256`];
-  const module = `${glue}/${name}_bg.wasm`;
+async function bind({ package: crate, glue: bound, name, features: { folder, optimiser } }) {
+  const compiled = `${folder}/wasm32-unknown-unknown/wasm/${crate.replaceAll('-', '_')}.wasm`;
+  const [module, stamp] = [`${glue}/${name}_bg.wasm`, `${folder}/glue/${name}.sha256`];
   const hash = createHash('sha256');
   for (const input of [compiled, at('scripts', 'library.mjs'), at('scripts', 'bindgen', 'bindgen.rs')]) hash.update(readFileSync(input));
   const digest = hash.digest('hex');
   if (existsSync(module) && existsSync(stamp) && readFileSync(stamp, 'utf8') === digest) return;
   say(`binding and optimising ${name}_bg.wasm`);
   mkdirSync(glue, { recursive: true });
-  await need('cargo', ['run', '--quiet', ...bindgen, '--', compiled, glue, name]);
-  await need('wasm-opt', [...optimise, module, '-o', `${module}.optimised`]);
+  await need('cargo', ['run', '--quiet', ...bindgen, '--', compiled, `${folder}/glue`, bound]);
+  if (name === bound) for (const file of [`${bound}.js`, `${bound}.d.ts`]) copyFileSync(`${folder}/glue/${file}`, `${glue}/${file}`);
+  await need('wasm-opt', [...optimise, ...optimiser, `${folder}/glue/${bound}_bg.wasm`, '-o', `${module}.optimised`]);
   renameSync(`${module}.optimised`, module);
   writeFileSync(stamp, digest);
 }

@@ -1,7 +1,7 @@
 // npm test: every suite, one after the other; a suite that cannot run has failed. Ends with the sum of all.
 import { existsSync, mkdirSync, readFileSync, rmSync } from 'node:fs';
 import { chromedriver, chromium, vulkan } from './browser.mjs';
-import { buildLibrary } from './library.mjs';
+import { buildLibrary, relaxedSimd } from './library.mjs';
 import { at, main, need, run, say, Stop } from './step.mjs';
 import { ensureRust } from './toolchain.mjs';
 
@@ -11,6 +11,17 @@ async function cargo(args, env = {}) {
   const lines = [...output.matchAll(/^test result: \w+\. (\d+) passed; (\d+) failed/gm)];
   const sum = (part) => lines.reduce((total, line) => total + Number(line[part]), 0);
   return settle(status, sum(1), sum(2));
+}
+
+/** The tests of the core that need no machine but the browser's, compiled with further arguments of cargo. */
+async function cargoInBrowser(args) {
+  await need('cargo', ['build', '--package', 'ctsn-bindgen', '--profile', 'tool', '--features', 'test-runner']);
+  return cargo(['--package', 'ctsn-tests', '--target', 'wasm32-unknown-unknown', ...args], {
+    ...vulkan(),
+    CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUNNER: at('target', 'tool', 'test-runner'),
+    CHROMEDRIVER: chromedriver(),
+    WASM_BINDGEN_TEST_TIMEOUT: '600',
+  });
 }
 
 /** Projects of vitest.config.ts. */
@@ -38,18 +49,11 @@ const buildCommand = () => need('cargo', ['test', '--release', '--no-run']);
 const suites = {
   // The physical tests print what they measured beside what is expected.
   'native: the workspace': () => cargo(['--no-fail-fast', '--', '--show-output']),
-  'browser: the core as WebAssembly with simd128': async () => {
-    await need('cargo', ['build', '--package', 'ctsn-bindgen', '--profile', 'tool', '--features', 'test-runner']);
-    return cargo(['--package', 'ctsn-tests', '--target', 'wasm32-unknown-unknown'], {
-      ...vulkan(),
-      CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUNNER: at('target', 'tool', 'test-runner'),
-      CHROMEDRIVER: chromedriver(),
-      WASM_BINDGEN_TEST_TIMEOUT: '600',
-    });
-  },
+  'browser: the core as WebAssembly with simd128': () => cargoInBrowser([]),
+  'browser: the core as WebAssembly with relaxed SIMD': () => cargoInBrowser(relaxedSimd.cargo),
   'Node: the npm package': async () => {
     await buildLibrary();
-    return vitest('package', 'oldest three');
+    return vitest('package', 'simd128', 'oldest three');
   },
   'Node: the exported network in onnxruntime': async () => {
     await buildCommand();

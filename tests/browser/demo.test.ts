@@ -40,8 +40,14 @@ test('the page plays, goes on predicting, and its controls work', async () => {
   expect(complaints).toEqual([]);
 });
 
-test('vertices and normals equal the native prediction of the same poses', async () => {
-  const { page, complaints } = await site.visit();
+const modules = {
+  'relaxed SIMD': { prepare: '', file: /^ctsn_relaxed_bg.*\.wasm$/ },
+  'simd128 alone': { prepare: 'WebAssembly.validate = () => false', file: /^ctsn_bg.*\.wasm$/ },
+};
+
+test.each(Object.entries(modules))('vertices and normals equal the native prediction, with %s', async (_, module) => {
+  const { page, complaints, files } = await site.visit('', (bare) => bare.addInitScript(module.prepare));
+  expect(files.filter((name) => name.endsWith('.wasm'))).toEqual([expect.stringMatching(module.file)]);
   const clips = await ask(page, (demo) => demo.clips, null);
   expect(Object.keys(clips).length).toBeGreaterThan(0);
   const captures = [];
@@ -116,7 +122,7 @@ test('a failure is told on the page: no model, a broken model, no such clip', as
 test('what only WebGPU needs is fetched for a device, and never without one', async () => {
   const ofGpu = (files: string[]) => files.filter((name) => name.includes('gpu')).map((name) => name.split('.').at(-1));
   const onCpu = await site.visit();
-  expect(onCpu.files).toContainEqual(expect.stringMatching(/^ctsn_bg.*\.wasm$/));
+  expect(onCpu.files).toContainEqual(expect.stringMatching(/^ctsn_relaxed_bg.*\.wasm$/));
   expect(ofGpu(onCpu.files)).toEqual([]);
   const none = 'GPU.prototype.requestAdapter = async () => null';
   const without = await site.visit('?backend=auto', (bare) => bare.addInitScript(none));

@@ -4,13 +4,26 @@ import { execFileSync } from 'node:child_process';
 import { expect, test } from 'vitest';
 import { budget, measure } from '../../scripts/size.mjs';
 
-test('the kernels are compiled to simd128', () => {
-  const wasm = new URL('../../web/dist/glue/ctsn_bg.wasm', import.meta.url).pathname;
-  const text = execFileSync('wasm-dis', ['--enable-simd', wasm], { encoding: 'utf8', maxBuffer: 1 << 28 });
-  const count = (instruction: string) => text.split(`(${instruction}`).length - 1;
+/** How often an instruction is in a module of the package. */
+function counter(name: string): (instruction: string) => number {
+  const wasm = new URL(`../../web/dist/glue/${name}_bg.wasm`, import.meta.url).pathname;
+  const flags = ['--enable-simd', '--enable-relaxed-simd', wasm];
+  const text = execFileSync('wasm-dis', flags, { encoding: 'utf8', maxBuffer: 1 << 28 });
+  return (instruction) => text.split(`(${instruction}`).length - 1;
+}
+
+test('the kernels are compiled to simd128, and to nothing that some browsers lack', () => {
+  const count = counter('ctsn');
   // The kernels multiply and add four lanes at a time; the compiler alone would leave a few vector moves at most.
   expect(count('f32x4.mul')).toBeGreaterThan(50);
   expect(count('f32x4.add')).toBeGreaterThan(50);
+  expect(count('f32x4.relaxed_madd')).toBe(0);
+});
+
+test('the kernels for relaxed SIMD multiply and add in one instruction', () => {
+  const [plain, relaxed] = [counter('ctsn'), counter('ctsn_relaxed')];
+  expect(relaxed('f32x4.relaxed_madd')).toBeGreaterThan(50);
+  expect(relaxed('f32x4.add')).toBeLessThan(plain('f32x4.add') / 2);
 });
 
 test('every part of the download is within its budget', async () => {

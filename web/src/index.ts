@@ -1,4 +1,4 @@
-export { loadModel, type GpuLoadOptions, type LoadOptions, type ModelSource } from './load.js';
+export { loadModel, type GpuLoadOptions, type LoadOptions, type ModelSource, type WasmSources } from './load.js';
 export { ClothModel, type CpuClothModel, type Frame } from './model.js';
 export type { PredictOptions, Surface } from './model.js';
 export type { Quality } from './quality.js';

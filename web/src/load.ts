@@ -4,14 +4,16 @@ import { CtsnError } from './error.js';
 import { ownDevice } from './gpu.js';
 import { ClothModel, type CpuClothModel } from './model.js';
 import type { WasmSource } from './module.js';
-import { readModel, startModule } from './raw.js';
+import { readModel, startModule, type CpuSources } from './raw.js';
+
+/** Where the WebAssembly modules come from, if not from beside the package's files. */
+export interface WasmSources extends CpuSources {
+  /** WebGPU's module, which is loaded when a model first computes on a GPU, and never before. */
+  gpuWasm?: WasmSource | undefined;
+}
 
 /** How to load a model. */
-export interface LoadOptions extends DownloadOptions {
-  /** The processor's module, where the bundler or the page must say: an address, its bytes, or the compiled module. */
-  wasm?: WasmSource | undefined;
-  /** Likewise WebGPU's module, which is loaded when a model first computes on a GPU, and never before. */
-  gpuWasm?: WasmSource | undefined;
+export interface LoadOptions extends DownloadOptions, WasmSources {
   /**
    * Steps of the polish, which brings out the folds after each prediction: 0 (none) to 256, the next even number of
    * them. The model file's own number (16, as `ctsn train` writes) if not given; no effect on a model without one.
@@ -45,7 +47,7 @@ export async function loadModel(
 ): Promise<ClothModel> {
   checkSteps(options.polish);
   if (options.backend === 'auto' || options.backend === 'webgpu') prepare(options.device, options.gpuWasm);
-  const [{ memory }, file] = await Promise.all([startModule(options.wasm), read(source, options)]);
+  const [{ memory }, file] = await Promise.all([startModule(options), read(source, options)]);
   const openSide: Opener = async (device) =>
     (await import('./gpu-side.js')).GpuSide.open(file, device, options);
   const model = new ClothModel(readModel(file, options.polish), memory, openSide);

@@ -5,13 +5,12 @@ import { CtsnError } from './error.js';
 export type WasmSource = string | URL | ArrayBuffer | Uint8Array<ArrayBuffer> | WebAssembly.Module;
 
 /**
- * What compiles and starts a module, once per page, from the first call's source, or else from `beside` the package's
- * files. A start that failed may be tried again.
+ * What compiles and starts a module, once per page, from the first call's source. A start that failed may be tried
+ * again.
  */
 export function starter<Exports>(
   initialiseGlue: (options: { module_or_path: BufferSource | WebAssembly.Module }) => Promise<Exports>,
-  beside: () => URL,
-): (source?: WasmSource) => Promise<Exports> {
+): (source: WasmSource) => Promise<Exports> {
   const start = async (source: WasmSource) => {
     const module = typeof source === 'string' || source instanceof URL ? await download(source) : source;
     return initialiseGlue({ module_or_path: module }).catch((cause: unknown) => {
@@ -20,7 +19,7 @@ export function starter<Exports>(
   };
   let starting: Promise<Exports> | undefined;
   return (source) => {
-    starting ??= start(source ?? beside()).catch((error: unknown) => {
+    starting ??= start(source).catch((error: unknown) => {
       starting = undefined;
       throw error;
     });

@@ -3,7 +3,7 @@
  * wanted and there. The other side of it is crate/wasm-gpu/src/lib.rs.
  */
 import initialiseGlue, { Gpu, GpuModel, type GpuPredictor } from './glue/ctsn_gpu.js';
-import { starter } from './module.js';
+import { starter, type WasmSource } from './module.js';
 
 export { Gpu, GpuModel };
 export type { GpuPredictor };
@@ -11,5 +11,7 @@ export type { GpuPredictor };
 /** The bundler must see this very expression to know the file. */
 const beside = () => new URL('./glue/ctsn_gpu_bg.wasm', import.meta.url);
 
+const start = /* @__PURE__ */ starter(initialiseGlue);
+
 /** Compiles and starts WebGPU's module, once per page, from the first call's source. */
-export const startGpuModule = /* @__PURE__ */ starter(initialiseGlue, beside);
+export const startGpuModule = (source?: WasmSource) => start(source ?? beside());

@@ -3,16 +3,40 @@
  * generates. The other side of it is crate/wasm/src/lib.rs. WebGPU's module has raw-gpu.ts.
  */
 import initialiseGlue, { Predictor, Streams, type Folds } from './glue/ctsn.js';
-import { fromCore, starter } from './module.js';
+import { fromCore, starter, type WasmSource } from './module.js';
 
 export { Streams };
 export type { Folds, Predictor };
 
-/** The bundler must see this very expression to know the file. */
-const beside = () => new URL('./glue/ctsn_bg.wasm', import.meta.url);
+/** Where the processor's modules come from, if not from beside the package's files. */
+export interface CpuSources {
+  /** The module for any browser, where the bundler or the page must say: an address, bytes, or the compiled module. */
+  wasm?: WasmSource | undefined;
+  /** Likewise the one that is taken in its place where the browser has relaxed SIMD. */
+  relaxedWasm?: WasmSource | undefined;
+}
 
-/** Compiles and starts the processor's module, once per page, from the first call's source. */
-export const startModule = /* @__PURE__ */ starter(initialiseGlue, beside);
+/** A module of one function, which multiplies and adds in one instruction: where it is valid there is relaxed SIMD. */
+const probe = [
+  ...[0, 0x61, 0x73, 0x6d, 1, 0, 0, 0, 1, 5, 1, 0x60, 0, 1, 0x7b, 3, 2, 1, 0],
+  ...[10, 8, 1, 6, 0, 0, 0xfd, 0x85, 2, 11],
+];
+
+/** The bundler must see these very expressions to know the files. */
+const beside = () => new URL('./glue/ctsn_bg.wasm', import.meta.url);
+const relaxedBeside = () => new URL('./glue/ctsn_relaxed_bg.wasm', import.meta.url);
+
+const start = /* @__PURE__ */ starter(initialiseGlue);
+
+/**
+ * Compiles and starts the processor's module, once per page, from the first call's source: a page that names `wasm`
+ * alone gets that.
+ */
+export function startModule({ wasm, relaxedWasm }: CpuSources): ReturnType<typeof start> {
+  const relaxed = WebAssembly.validate(new Uint8Array(probe));
+  if (relaxed && (relaxedWasm || !wasm)) return start(relaxedWasm ?? relaxedBeside());
+  return start(wasm ?? beside());
+}
 
 /** Reads a model file [bytes] in the started module; `polish`: steps, if not the file's own number. */
 export function readModel(bytes: Uint8Array, polish?: number): Predictor {

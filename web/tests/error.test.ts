@@ -2,7 +2,7 @@ import { createServer, type Server } from 'node:http';
 import { readFileSync } from 'node:fs';
 import type { AddressInfo } from 'node:net';
 import { afterAll, beforeAll, expect, test, vi } from 'vitest';
-import { CtsnError, loadModel, type ClothModel, type Pose } from 'ctsn';
+import { CtsnError, loadModel, type ClothModel, type Pose, type WasmSources } from 'ctsn';
 import { FakeNavigator } from './fake-gpu.js';
 import { bytesOf, loadGolden } from './golden.js';
 
@@ -145,6 +145,23 @@ test('the module may be given; one that is broken is refused, and the next try m
   const model = await fresh.loadModel(whole, { wasm });
   expect(model.vertexCount).toBe(600);
   model.dispose();
+});
+
+test('a module for relaxed SIMD is taken where that is, unless a page names the other alone', async () => {
+  const validate = vi.spyOn(WebAssembly, 'validate');
+  const good = readFileSync(new URL('../dist/glue/ctsn_bg.wasm', import.meta.url));
+  const broken = new Uint8Array([0, 97, 115, 109, 1]);
+  const load = async (relaxedSimd: boolean, sources: WasmSources) => {
+    validate.mockReturnValue(relaxedSimd);
+    vi.resetModules();
+    (await (await import('ctsn')).loadModel(whole, sources)).dispose();
+  };
+  await load(true, { wasm: broken, relaxedWasm: good });
+  await load(false, { wasm: good, relaxedWasm: broken });
+  await load(true, { wasm: good });
+  await expect(load(true, { wasm: good, relaxedWasm: broken })).rejects.toMatchObject({ code: 'wasm' });
+  await expect(load(true, { wasm: broken })).rejects.toMatchObject({ code: 'wasm' });
+  validate.mockRestore();
 });
 
 test("WebGPU's module may be given; with one that is broken the CPU computes, and the model says why", async () => {

@@ -143,7 +143,7 @@ test('the CPU answers for a GPU that failed, and leaves a prediction alone that 
 });
 
 test('the CPU answers for the right pose, although the memory grew while the prediction was submitted', async () => {
-  const { memory } = await startModule();
+  const { memory } = await startModule({});
   const model = await load(new FakeDevice('lent'));
   gpu.held = true;
   gpu.submitting = () => void memory.grow(1);
@@ -155,7 +155,7 @@ test('the CPU answers for the right pose, although the memory grew while the pre
 });
 
 test('the CPU answers at once where the GPU takes no prediction, whatever a listener predicts meanwhile', async () => {
-  const { memory } = await startModule();
+  const { memory } = await startModule({});
   const model = await load(new FakeDevice('lent'));
   model.addEventListener('backend', () => void model.predictCloth(tiny.poses[1]!));
   gpu.submitting = () => {

@@ -1,21 +1,18 @@
 import { Loader } from 'three';
 import type { BackendChoice } from '../backend.js';
 import type { Progress } from '../download.js';
-import { loadModel } from '../load.js';
+import { loadModel, type WasmSources } from '../load.js';
 import type { ClothModel } from '../model.js';
-import type { WasmSource } from '../module.js';
 
 /** `loadModel` as a three.js loader, with its path, loading manager, request headers and credentials. */
 export class ClothLoader extends Loader<ClothModel> {
-  #wasm: WasmSource | undefined;
-  #gpuWasm: WasmSource | undefined;
+  #wasm: WasmSources = {};
   #backend: BackendChoice = 'cpu';
   #device: GPUDevice | undefined;
 
-  /** Where the WebAssembly modules come from, the processor's and WebGPU's, if not from beside the package's files. */
-  setWasm(source: WasmSource, gpuSource?: WasmSource): this {
-    this.#wasm = source;
-    this.#gpuWasm = gpuSource;
+  /** Where the WebAssembly modules come from, as for `loadModel`. */
+  setWasm(sources: WasmSources): this {
+    this.#wasm = sources;
     return this;
   }
 
@@ -35,10 +32,9 @@ export class ClothLoader extends Loader<ClothModel> {
     const address = this.manager.resolveURL(this.path + url);
     const credentials = this.withCredentials ? 'include' : 'same-origin';
     const options = {
+      ...this.#wasm,
       backend: this.#backend,
       device: this.#device,
-      wasm: this.#wasm,
-      gpuWasm: this.#gpuWasm,
       request: { headers: this.requestHeader, credentials } satisfies RequestInit,
       onProgress: (progress: Progress) => onProgress?.(toEvent(progress)),
     };
