@@ -123,7 +123,14 @@ impl Steps<'_> {
         let mut training = self.arguments.training.clone();
         training.settings.budget = self.budget.map(|budget| budget.mul_f64(share));
         let (dataset, output) = (dataset.to_owned(), output.to_owned());
-        train::run(&train::Arguments { dataset, garment: None, self_supervised: false, output, training })
+        train::run(&train::Arguments {
+            dataset,
+            garment: None,
+            self_supervised: false,
+            teacher: false,
+            output,
+            training,
+        })
     }
 }
 

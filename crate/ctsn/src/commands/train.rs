@@ -5,7 +5,7 @@ use anyhow::{Context, Result, anyhow};
 use ctsn_core::model::{Body, Cut, HostModel, STEPS, Storage};
 use ctsn_rig::file;
 use ctsn_train::body::body;
-use ctsn_train::dataset::{Dataset, Setup, fingerprint};
+use ctsn_train::dataset::{Dataset, Sample, Setup, fingerprint};
 use ctsn_train::training::{self, Architecture, End, Files, Part, Row, Settings, Slices, Trainer, Variant};
 use std::path::{Path, PathBuf};
 
@@ -29,6 +29,11 @@ pub struct Arguments {
     /// smoother than simulated cloth
     #[arg(long, requires = "garment")]
     pub self_supervised: bool,
+    /// Train a model to relax poses from (`ctsn simulate --from`): the simulated cloth says where it is, the energy of the
+    /// predicted cloth how it folds. It is farther from this truth than others, but nearly keeps its lengths, so truth
+    /// relaxed from it folds as it does
+    #[arg(long, conflicts_with = "self_supervised")]
+    pub teacher: bool,
     /// Model file to write (safetensors)
     #[arg(short, long)]
     pub output: PathBuf,
@@ -54,6 +59,9 @@ pub struct Training {
 const STORAGES: &[(&str, &str, Storage)] =
     &[("f32", "32-bit floats", Storage::F32), ("f16", "16-bit floats, half the bytes", Storage::F16)];
 
+/// What makes a trainer, by its losses.
+type By = fn(HostModel, &Setup, &[&Sample], Settings) -> ctsn_train::Result<Trainer>;
+
 pub fn run(arguments: &Arguments) -> Result<()> {
     let Arguments { output, training: asked, .. } = arguments;
     let dataset = match &arguments.garment {
@@ -67,7 +75,12 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let files = Files { checkpoint: output.with_extension("checkpoint"), curve: output.with_extension("curve.csv") };
     // Before the training: an unusable body must not be found out after hours.
     let body = body(&dataset.setup, &slices.train)?;
-    let mut trainer = asked.trainer(&dataset.setup, &slices, body)?;
+    let by: By = match arguments {
+        Arguments { self_supervised: true, .. } => Trainer::self_supervised,
+        Arguments { teacher: true, .. } => Trainer::teacher,
+        _ => Trainer::new,
+    };
+    let mut trainer = asked.trainer(by, &dataset.setup, &slices, body)?;
     let key = key(&dataset.setup, &slices, &trainer)?;
     // What was learned, exactly, whatever the storage asked for.
     let learned = output.with_extension("f32.safetensors");
@@ -138,7 +151,7 @@ fn key(setup: &Setup, slices: &Slices, trainer: &Trainer) -> Result<String> {
 
 impl Training {
     /// A trainer that has not begun.
-    fn trainer(&self, setup: &Setup, slices: &Slices, body: Body<Vec<f32>, Vec<u32>>) -> Result<Trainer> {
+    fn trainer(&self, by: By, setup: &Setup, slices: &Slices, body: Body<Vec<f32>, Vec<u32>>) -> Result<Trainer> {
         let variant = Variant::without(&self.without);
         let architecture = variant.sizes(self.network);
         let mut model = training::initial(setup, &slices.train, architecture, self.settings.seed)?;
@@ -152,8 +165,7 @@ impl Training {
             model.sizes.vertices
         );
         let settings = Settings { variant, ..self.settings };
-        let trainer = if slices.validation.is_empty() { Trainer::self_supervised } else { Trainer::new };
-        Ok(trainer(model, setup, &slices.train, settings)?)
+        Ok(by(model, setup, &slices.train, settings)?)
     }
 
     /// What the model file says of its training. Nothing in it depends on the time of day.
@@ -214,10 +226,11 @@ fn fit(trainer: &mut Trainer, slices: &Slices, files: &Files) -> Result<End> {
 
 fn errors(row: &Row) -> String {
     let Row { distance, normal, .. } = row;
-    if row.loss("energy").is_some() {
-        let losses = row.losses.iter().map(|(name, value)| format!("{name} {value:.3} J"));
-        return losses.collect::<Vec<_>>().join(", ");
+    let energies = ["energy", "contact"].map(|name| row.loss(name).map(|value| format!("{name} {value:.3} J, ")));
+    let energies: String = energies.into_iter().flatten().collect();
+    let loss = row.loss("fine").map_or(energies, |fine| format!("loss {:.2} mm, ", fine * 1e3));
+    if !row.is_judged() {
+        return format!("{loss}no truth");
     }
-    let loss = row.loss("fine").map_or(String::new(), |fine| format!("loss {:.2} mm, ", fine * 1e3));
     format!("{loss}E_dist {:.2} mm, E_norm {normal:.2}°", distance * 1e3)
 }

@@ -27,6 +27,11 @@ pub struct Row {
 const LOSS: &str = "_loss";
 
 impl Row {
+    /// Whether there was a truth to compare with.
+    pub fn is_judged(&self) -> bool {
+        ["fine", "smooth"].iter().any(|name| self.loss(name).is_some())
+    }
+
     /// The mean of the loss of that name.
     pub fn loss(&self, name: &str) -> Option<f32> {
         self.losses.iter().find(|(known, _)| known == name).map(|(_, value)| *value)
