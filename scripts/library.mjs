@@ -17,10 +17,27 @@ export const relaxedSimd = {
   optimiser: ['--enable-relaxed-simd'],
 };
 
-/** The processor's module, the same for relaxed SIMD, and WebGPU's: package, name of the glue and of the module. */
+/**
+ * Shared memory, too: its standard library is compiled with ours, since Rust has none with atomics ready. The linker
+ * must be told of the memory, or it leaves one, silently, that is not shared. 1 GiB is reserved, not taken.
+ */
+const sharedMemory = {
+  folder: at('target', 'threads'),
+  cargo: ['--target-dir', at('target', 'threads'), '--features', 'ctsn-wasm/threads', '-Zbuild-std=std,panic_abort', '--config',
+    `target.wasm32-unknown-unknown.rustflags = ['-Ctarget-feature=+relaxed-simd,+atomics', ${[
+      '--shared-memory', '--import-memory', '--max-memory=1073741824',
+      ...['__wasm_init_tls', '__tls_size', '__tls_align', '__tls_base'].map((name) => `--export=${name}`),
+    ].map((argument) => `'-Clink-arg=${argument}'`).join(', ')}]`],
+  // What `-Z` wants of a stable compiler.
+  env: { RUSTC_BOOTSTRAP: '1' },
+  optimiser: ['--enable-relaxed-simd', '--enable-threads'],
+};
+
+/** The processor's module, the same for relaxed SIMD, and with threads, and WebGPU's: package, name of the glue and of the module. */
 const modules = [
   { package: 'ctsn-wasm', glue: 'ctsn', name: 'ctsn', features: simd128 },
   { package: 'ctsn-wasm', glue: 'ctsn', name: 'ctsn_relaxed', features: relaxedSimd },
+  { package: 'ctsn-wasm', glue: 'ctsn_threads', name: 'ctsn_threads', features: sharedMemory },
   { package: 'ctsn-wasm-gpu', glue: 'ctsn_gpu', name: 'ctsn_gpu', features: simd128 },
 ];
 
@@ -38,7 +55,7 @@ const bindgen = ['--package', 'ctsn-bindgen', '--profile', 'tool', '--bin', 'bin
 /** Compiles to WebAssembly whatever has those features. */
 function compile(features) {
   const packages = modules.filter((module) => module.features === features).flatMap((module) => ['--package', module.package]);
-  return need('cargo', ['build', ...packages, '--target', 'wasm32-unknown-unknown', '--profile', 'wasm', ...features.cargo]);
+  return need('cargo', ['build', ...packages, '--target', 'wasm32-unknown-unknown', '--profile', 'wasm', ...features.cargo], { env: features.env });
 }
 
 /**
@@ -50,7 +67,8 @@ export async function buildWasm() {
   say('compiling the network to WebAssembly');
   await all([
     compile(simd128).then(() => need('cargo', ['build', ...bindgen], { capture: true })),
-    compile(relaxedSimd),
+    // One after the other: each is wide first and narrow at its end, and two keep both cores.
+    compile(relaxedSimd).then(() => compile(sharedMemory)),
     ensurePackages(),
   ]);
   await all(modules.map(bind));
