@@ -62,16 +62,16 @@ function compile(features) {
  * Compiles crate/wasm and crate/wasm-gpu and makes web/src/glue from them; whatever of tools and npm packages is
  * missing, at the same time.
  */
-export async function buildWasm() {
+async function buildWasm(threads) {
   await ensureRust();
   say('compiling the network to WebAssembly');
   await all([
     compile(simd128).then(() => need('cargo', ['build', ...bindgen], { capture: true })),
     // One after the other: each is wide first and narrow at its end, and two keep both cores.
-    compile(relaxedSimd).then(() => compile(sharedMemory)),
+    compile(relaxedSimd).then(() => threads && compile(sharedMemory)),
     ensurePackages(),
   ]);
-  await all(modules.map(bind));
+  await all(modules.filter(({ features }) => threads || features !== sharedMemory).map(bind));
   const [one, other] = [simd128, relaxedSimd].map(({ folder }) => readFileSync(`${folder}/glue/ctsn.js`, 'utf8'));
   if (one !== other) throw new Stop('the glue of ctsn.wasm and of ctsn_relaxed.wasm differs: the package has the first for both.');
 }
@@ -93,10 +93,13 @@ async function bind({ package: crate, glue: bound, name, features: { folder, opt
   writeFileSync(stamp, digest);
 }
 
-/** Compiles web/src to web/dist; the glue is JavaScript already and is copied. */
-export async function buildLibrary() {
-  await buildWasm();
+/**
+ * Compiles web/src to web/dist; the glue is JavaScript already and is copied. Without `threads` their module is left as
+ * it is, be it missing: it takes a minute, and the demo has none.
+ */
+export async function buildLibrary({ threads = true } = {}) {
+  await buildWasm(threads);
   say('compiling the npm package');
-  await need('tsc', ['-p', at('web', 'tsconfig.json')]);
+  await need('tsc', ['-p', at('web', 'tsconfig.json'), ...(threads ? [] : ['--noCheck'])]);
   cpSync(glue, at('web', 'dist', 'glue'), { recursive: true, preserveTimestamps: true });
 }
