@@ -28,9 +28,10 @@ function chain() {
 }
 
 /** In the page: median milliseconds of whole `predictCloth` calls, by run; every call has another pose. */
-async function measureInPage({ name, posed, quality, runs, predictions }) {
+async function measureInPage({ name, posed, quality, threads, runs, predictions }) {
   const { loadModel } = await import('/dist/index.js');
-  const model = await loadModel(`/models/${name}.safetensors`);
+  const model = await loadModel(`/models/${name}.safetensors`, { threads });
+  if (model.threads !== threads) throw new Error(`${threads} threads wanted, ${model.threads} found`);
   const all = new Float32Array(await (await fetch(`/models/${posed}.bin`)).arrayBuffer());
   const stride = 16 * model.joints.length;
   const poses = Array.from({ length: all.length / stride }, (_, p) => all.subarray(p * stride, (p + 1) * stride));
@@ -51,9 +52,10 @@ async function measureInPage({ name, posed, quality, runs, predictions }) {
   return { medians, vertices, joints };
 }
 
-/** What is measured in a page: what it is called, the files of model and poses, the quality. */
+/** What is measured in a page: what it is called, the files of model and poses, the quality, more threads than one. */
 const cases = [
   ['made-up cloth, full', 'bench', 'chain', 'full'],
+  ['made-up cloth, full, two threads', 'bench', 'chain', 'full', 2],
   ['made-up cloth, coarse', 'bench', 'chain', 'coarse'],
   ['made-up cloth without a body, coarse', 'bare', 'chain', 'coarse'],
   ['made-up cloth, skinned', 'bench', 'chain', 'skinned'],
@@ -90,12 +92,12 @@ await main(async () => {
   if (process.argv.includes('--peers')) return comparePeers(ctsn);
   say('native, one thread');
   await need(ctsn, ['bench']);
-  say('Chromium, one thread, predictCloth');
+  say('Chromium, predictCloth');
   const folder = at('target', 'bench');
   await prepareCases(ctsn, folder);
   await withServer({ '/dist/': at('web', 'dist'), '/models/': folder }, async (origin) => {
-    for (const [title, name, posed, quality] of cases) {
-      const options = { name, posed, quality, runs: RUNS, predictions: PREDICTIONS };
+    for (const [title, name, posed, quality, threads = 1] of cases) {
+      const options = { name, posed, quality, threads, runs: RUNS, predictions: PREDICTIONS };
       const { medians, vertices, joints } = await inPage(origin, measureInPage, options);
       const sorted = medians.sort((a, b) => a - b);
       const [median, least, most] = [sorted[RUNS >> 1], sorted[0], sorted.at(-1)].map((ms) => `${ms.toFixed(3)} ms`);

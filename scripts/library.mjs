@@ -17,10 +17,27 @@ export const relaxedSimd = {
   optimiser: ['--enable-relaxed-simd'],
 };
 
-/** The processor's module, the same for relaxed SIMD, and WebGPU's: package, name of the glue and of the module. */
+/**
+ * Shared memory, too: its standard library is compiled with ours, since Rust has none with atomics ready. The linker
+ * must be told of the memory, or it leaves one, silently, that is not shared. 1 GiB is reserved, not taken.
+ */
+const sharedMemory = {
+  folder: at('target', 'threads'),
+  cargo: ['--target-dir', at('target', 'threads'), '--features', 'ctsn-wasm/threads', '-Zbuild-std=std,panic_abort', '--config',
+    `target.wasm32-unknown-unknown.rustflags = ['-Ctarget-feature=+relaxed-simd,+atomics', ${[
+      '--shared-memory', '--import-memory', '--max-memory=1073741824',
+      ...['__wasm_init_tls', '__tls_size', '__tls_align', '__tls_base'].map((name) => `--export=${name}`),
+    ].map((argument) => `'-Clink-arg=${argument}'`).join(', ')}]`],
+  // What `-Z` wants of a stable compiler.
+  env: { RUSTC_BOOTSTRAP: '1' },
+  optimiser: ['--enable-relaxed-simd', '--enable-threads'],
+};
+
+/** The processor's module, the same for relaxed SIMD, and with threads, and WebGPU's: package, name of the glue and of the module. */
 const modules = [
   { package: 'ctsn-wasm', glue: 'ctsn', name: 'ctsn', features: simd128 },
   { package: 'ctsn-wasm', glue: 'ctsn', name: 'ctsn_relaxed', features: relaxedSimd },
+  { package: 'ctsn-wasm', glue: 'ctsn_threads', name: 'ctsn_threads', features: sharedMemory },
   { package: 'ctsn-wasm-gpu', glue: 'ctsn_gpu', name: 'ctsn_gpu', features: simd128 },
 ];
 
@@ -38,22 +55,23 @@ const bindgen = ['--package', 'ctsn-bindgen', '--profile', 'tool', '--bin', 'bin
 /** Compiles to WebAssembly whatever has those features. */
 function compile(features) {
   const packages = modules.filter((module) => module.features === features).flatMap((module) => ['--package', module.package]);
-  return need('cargo', ['build', ...packages, '--target', 'wasm32-unknown-unknown', '--profile', 'wasm', ...features.cargo]);
+  return need('cargo', ['build', ...packages, '--target', 'wasm32-unknown-unknown', '--profile', 'wasm', ...features.cargo], { env: features.env });
 }
 
 /**
  * Compiles crate/wasm and crate/wasm-gpu and makes web/src/glue from them; whatever of tools and npm packages is
  * missing, at the same time.
  */
-export async function buildWasm() {
+async function buildWasm(threads) {
   await ensureRust();
   say('compiling the network to WebAssembly');
   await all([
     compile(simd128).then(() => need('cargo', ['build', ...bindgen], { capture: true })),
-    compile(relaxedSimd),
+    // One after the other: each is wide first and narrow at its end, and two keep both cores.
+    compile(relaxedSimd).then(() => threads && compile(sharedMemory)),
     ensurePackages(),
   ]);
-  await all(modules.map(bind));
+  await all(modules.filter(({ features }) => threads || features !== sharedMemory).map(bind));
   const [one, other] = [simd128, relaxedSimd].map(({ folder }) => readFileSync(`${folder}/glue/ctsn.js`, 'utf8'));
   if (one !== other) throw new Stop('the glue of ctsn.wasm and of ctsn_relaxed.wasm differs: the package has the first for both.');
 }
@@ -75,10 +93,13 @@ async function bind({ package: crate, glue: bound, name, features: { folder, opt
   writeFileSync(stamp, digest);
 }
 
-/** Compiles web/src to web/dist; the glue is JavaScript already and is copied. */
-export async function buildLibrary() {
-  await buildWasm();
+/**
+ * Compiles web/src to web/dist; the glue is JavaScript already and is copied. Without `threads` their module is left as
+ * it is, be it missing: it takes a minute, and the demo has none.
+ */
+export async function buildLibrary({ threads = true } = {}) {
+  await buildWasm(threads);
   say('compiling the npm package');
-  await need('tsc', ['-p', at('web', 'tsconfig.json')]);
+  await need('tsc', ['-p', at('web', 'tsconfig.json'), ...(threads ? [] : ['--noCheck'])]);
   cpSync(glue, at('web', 'dist', 'glue'), { recursive: true, preserveTimestamps: true });
 }

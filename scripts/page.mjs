@@ -13,16 +13,17 @@ const isolated = {
 };
 
 /**
- * Runs `body(origin)` while `folders`, { '/prefix/': folder }, are served there; every other address is an empty page.
+ * Runs `body(origin)` while `folders`, { '/prefix/': folder }, are served there, with those headers; every other address
+ * is an empty page.
  */
-export async function withServer(folders, body) {
+export async function withServer(folders, body, headers = isolated) {
   const server = createServer((request, response) => {
     const { pathname } = new URL(request.url, 'http://localhost');
     const prefix = Object.keys(folders).find((prefix) => pathname.startsWith(prefix));
     const file = prefix && path.join(folders[prefix], pathname.slice(prefix.length));
     const found = file && existsSync(file);
     const type = found ? types[path.extname(file)] ?? 'application/octet-stream' : 'text/html';
-    response.writeHead(prefix && !found ? 404 : 200, { ...isolated, 'Content-Type': type });
+    response.writeHead(prefix && !found ? 404 : 200, { ...headers, 'Content-Type': type });
     if (found) createReadStream(file).pipe(response);
     else response.end('<!doctype html><title>bench</title>');
   });

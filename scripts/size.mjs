@@ -1,12 +1,13 @@
 // npm run size: what a page downloads, raw and compressed, beside the budget in scripts/budget.json.
 import { readFileSync } from 'node:fs';
+import path from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { brotliCompressSync } from 'node:zlib';
 import { at, main } from './step.mjs';
 
 /**
- * Minified JavaScript of an entry of the npm package, three.js left out: what is loaded with it, and what only a GPU
- * asks for.
+ * Minified JavaScript of an entry of the npm package, three.js left out: what is loaded with it, what only a GPU asks
+ * for, and what only threads do, their worker's included.
  */
 async function bundle(entry) {
   const { build } = await import('vite');
@@ -21,9 +22,15 @@ async function bundle(entry) {
       rolldownOptions: { input: at('web', 'dist', entry), external: ['three'], preserveEntrySignatures: 'strict' },
     },
   });
-  const chunks = output.filter(({ type }) => type === 'chunk');
-  const code = (lazy) => Buffer.from(chunks.filter(({ isDynamicEntry }) => isDynamicEntry === lazy).map((chunk) => chunk.code).join('\n'));
-  return { javascript: code(false), lazy: code(true) };
+  const scripts = output.filter(({ fileName }) => fileName.endsWith('.js'));
+  const lazy = { gpu: /gpu-side/, threads: /thread/ };
+  const all = Object.values(lazy);
+  const code = (wanted) => Buffer.from(scripts.filter(({ fileName }) => wanted(path.basename(fileName))).map(({ code, source }) => code ?? source).join('\n'));
+  return {
+    javascript: code((name) => !all.some((pattern) => pattern.test(name))),
+    gpu: code((name) => lazy.gpu.test(name)),
+    threads: code((name) => lazy.threads.test(name)),
+  };
 }
 
 const weigh = (bytes) => ({ raw: bytes.length, brotli: brotliCompressSync(bytes).length });
@@ -43,7 +50,9 @@ export async function measure() {
     'wasm and javascript': sum(larger(wasm, relaxed), javascript),
     'javascript with three adapter': weigh(adapter.javascript),
     'wasm of WebGPU': module('ctsn_gpu'),
-    'javascript of WebGPU': weigh(bare.lazy),
+    'javascript of WebGPU': weigh(bare.gpu),
+    'wasm with threads, in place of wasm': module('ctsn_threads'),
+    'javascript of threads': weigh(bare.threads),
   };
 }
 

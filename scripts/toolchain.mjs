@@ -13,17 +13,26 @@ export async function ensurePackages() {
   writeFileSync(installed, lock);
 }
 
-/** cargo, with the pinned toolchain of rust-toolchain.toml and the target wasm32-unknown-unknown. */
+/**
+ * cargo, with the pinned toolchain of rust-toolchain.toml, the target wasm32-unknown-unknown, and the standard library's
+ * source for the module with threads.
+ */
 export async function ensureRust() {
   const cargo = await run('cargo', ['--version'], { capture: true });
   if (cargo.status !== 0) {
     throw new Stop(`Rust is missing (cargo --version: ${cargo.status}). Install it from https://rustup.rs, open a new terminal, and run this again.\n${cargo.output}`);
   }
   const sysroot = (await need('rustc', ['--print', 'sysroot'], { capture: true })).trim().split('\n').at(-1);
-  if (existsSync(`${sysroot}/lib/rustlib/wasm32-unknown-unknown`)) return;
-  say('adding the Rust target wasm32-unknown-unknown');
-  const added = await run('rustup', ['target', 'add', 'wasm32-unknown-unknown']);
+  await addRust(`${sysroot}/lib/rustlib/wasm32-unknown-unknown`, 'target', 'wasm32-unknown-unknown');
+  await addRust(`${sysroot}/lib/rustlib/src/rust/library`, 'component', 'rust-src');
+}
+
+/** Adds a target or a component to the toolchain where its folder is missing. */
+async function addRust(folder, kind, name) {
+  if (existsSync(folder)) return;
+  say(`adding the Rust ${kind} ${name}`);
+  const added = await run('rustup', [kind, 'add', name]);
   if (added.status !== 0) {
-    throw new Stop('the Rust target wasm32-unknown-unknown is missing, and `rustup target add wasm32-unknown-unknown` failed. See https://rustup.rs.');
+    throw new Stop(`the Rust ${kind} ${name} is missing, and \`rustup ${kind} add ${name}\` failed. See https://rustup.rs.`);
   }
 }

@@ -92,11 +92,11 @@ fn prediction_allocates_once() {
         });
         assert_eq!(found, 0, "{level:?}: calls for memory in frames of held folds");
     }
-    threads_allocate_a_block_now_and_then(&poses);
+    threads_allocate_nothing_but_their_scratch(&poses);
 }
 
-/// Beside the first frames: the queue through which rayon is asked is a chain of blocks of 63 requests.
-fn threads_allocate_a_block_now_and_then(poses: &[f32]) {
+/// A thread makes room for itself in the first part of each operation that it takes, and may be late to take one.
+fn threads_allocate_nothing_but_their_scratch(poses: &[f32]) {
     let mut model = HostModel::parse(golden::ALL[1].model).expect("golden model");
     model.body = Some(sphere::body(model.sizes.vertices));
     let pose = &poses[..12 * model.sizes.joints];

@@ -4,7 +4,7 @@ import { CtsnError } from './error.js';
 import { ownDevice } from './gpu.js';
 import { ClothModel, type CpuClothModel } from './model.js';
 import type { WasmSource } from './module.js';
-import { readModel, startModule, type CpuSources } from './raw.js';
+import { readModel, relaxedSimd, startModule, type CpuSources, type Engine } from './raw.js';
 
 /** Where the WebAssembly modules come from, if not from beside the package's files. */
 export interface WasmSources extends CpuSources {
@@ -19,6 +19,12 @@ export interface LoadOptions extends DownloadOptions, WasmSources {
    * them. The model file's own number (16, as `ctsn train` writes) if not given; no effect on a model without one.
    */
   polish?: number | undefined;
+  /**
+   * Threads to compute on, the page's own among them; `auto`: as many as the machine has, 4 at most. More than one only
+   * in a page that is cross-origin isolated, in a browser with relaxed SIMD: `model.threads` tells. How many there are
+   * is decided by a page's first call that gets any.
+   */
+  threads?: number | 'auto' | undefined;
 }
 
 /** How to load a model that may compute on the GPU. */
@@ -47,10 +53,11 @@ export async function loadModel(
 ): Promise<ClothModel> {
   checkSteps(options.polish);
   if (options.backend === 'auto' || options.backend === 'webgpu') prepare(options.device, options.gpuWasm);
-  const [{ memory }, file] = await Promise.all([startModule(options), read(source, options)]);
+  const threads = countThreads(options.threads);
+  const [engine, file] = await Promise.all([startEngine(threads, options), read(source, options)]);
   const openSide: Opener = async (device) =>
     (await import('./gpu-side.js')).GpuSide.open(file, device, options);
-  const model = new ClothModel(readModel(file, options.polish), memory, openSide);
+  const model = new ClothModel(readModel(engine, file, options.polish), engine, openSide);
   try {
     await model.setBackend(options.backend ?? 'cpu', options.device);
   } catch (error) {
@@ -70,6 +77,25 @@ function prepare(device: GPUDevice | undefined, wasm: WasmSource | undefined): v
     await (await import('./gpu-side.js')).startGpuModule(wasm);
   };
   start().catch(() => undefined);
+}
+
+/** Threads that are wanted and that this page may have. */
+function countThreads(wanted: LoadOptions['threads'] = 1): number {
+  if (wanted !== 'auto' && !(Number.isInteger(wanted) && wanted >= 1)) {
+    throw new CtsnError('argument', `threads: wanted "auto" or a whole number from 1, found ${String(wanted)}`);
+  }
+  if (!globalThis.crossOriginIsolated || !relaxedSimd()) return 1;
+  return wanted === 'auto' ? Math.min(navigator.hardwareConcurrency, 4) : wanted;
+}
+
+/** The module with threads, if it starts; else the one without. */
+async function startEngine(threads: number, sources: WasmSources): Promise<Engine> {
+  if (threads === 1) return startModule(sources);
+  try {
+    return await (await import('./raw-threads.js')).startThreads(threads, sources.threadsWasm);
+  } catch {
+    return startModule(sources);
+  }
 }
 
 function checkSteps(polish: number | undefined): void {

@@ -2,9 +2,9 @@ import { Switch, type Backend, type BackendChoice, type Measured, type Opener } 
 import type { ClothBuffers } from './buffers.js';
 import { CtsnError } from './error.js';
 import { fromCore } from './module.js';
-import { writePose, type Pose } from './pose.js';
+import { restPose, writePose, type Pose } from './pose.js';
 import { Fade, type Quality } from './quality.js';
-import type { Predictor } from './raw.js';
+import type { Engine, Predictor } from './raw.js';
 
 /** How to predict. */
 export interface PredictOptions {
@@ -67,6 +67,8 @@ export class ClothModel extends EventTarget {
   readonly triangles: Uint32Array;
   /** The mesh to draw, where the file has one beside the cloth mesh. */
   readonly surface: Surface | undefined;
+  /** Threads that compute it on the CPU, the page's own among them. */
+  readonly threads: number;
 
   #predictor: Predictor | undefined;
   readonly #memory: WebAssembly.Memory;
@@ -81,7 +83,7 @@ export class ClothModel extends EventTarget {
   #pose = new Float32Array();
 
   /** @internal */
-  constructor(predictor: Predictor, memory: WebAssembly.Memory, openSide: Opener) {
+  constructor(predictor: Predictor, { memory, threads }: Engine, openSide: Opener) {
     super();
     this.#predictor = predictor;
     this.#memory = memory;
@@ -97,6 +99,7 @@ export class ClothModel extends EventTarget {
     this.vertexCount = predictor.vertex_count();
     this.triangles = predictor.triangles();
     this.surface = readSurface(predictor);
+    this.threads = threads;
   }
 
   /** True after `dispose()`. */
@@ -284,11 +287,6 @@ export interface CpuClothModel extends ClothModel {
 
 /** Codes of failures of the GPU, after which the CPU can go on. */
 const deviceFaults = new Set(['no_adapter', 'no_device', 'limit', 'out_of_memory', 'refused', 'lost', 'missing']);
-
-/** Every joint at the origin [16·J]. */
-function restPose(joints: number): Float32Array {
-  return Float32Array.from({ length: 16 * joints }, (_, at) => ((at % 16) % 5 === 0 ? 1 : 0));
-}
 
 function readSurface(predictor: Predictor): Surface | undefined {
   const vertex = predictor.surface_vertex();

@@ -29,3 +29,8 @@ export function writePose(pose: Pose, joints: readonly string[], out: Float32Arr
 function wrongLength(what: string, wanted: number, found: number): CtsnError {
   return new CtsnError('joint_count', `${what}: ${wanted} numbers wanted, ${found} found`);
 }
+
+/** Every joint at the origin [16·J]. */
+export function restPose(joints: number): Float32Array {
+  return Float32Array.from({ length: 16 * joints }, (_, at) => ((at % 16) % 5 === 0 ? 1 : 0));
+}

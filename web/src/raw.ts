@@ -1,6 +1,7 @@
 /**
  * The boundary to the processor's WebAssembly module: the only file that imports its glue, which wasm-bindgen
- * generates. The other side of it is crate/wasm/src/lib.rs. WebGPU's module has raw-gpu.ts.
+ * generates. The other side of it is crate/wasm/src/lib.rs. The same module with threads has raw-threads.ts, WebGPU's
+ * raw-gpu.ts.
  */
 import initialiseGlue, { Predictor, Streams, type Folds } from './glue/ctsn.js';
 import { fromCore, starter, type WasmSource } from './module.js';
@@ -14,6 +15,8 @@ export interface CpuSources {
   wasm?: WasmSource | undefined;
   /** Likewise the one that is taken in its place where the browser has relaxed SIMD. */
   relaxedWasm?: WasmSource | undefined;
+  /** Likewise the one that is taken in place of both where threads are wanted and the page may have them. */
+  threadsWasm?: WasmSource | undefined;
 }
 
 /** A module of one function, which multiplies and adds in one instruction: where it is valid there is relaxed SIMD. */
@@ -26,22 +29,33 @@ const probe = [
 const beside = () => new URL('./glue/ctsn_bg.wasm', import.meta.url);
 const relaxedBeside = () => new URL('./glue/ctsn_relaxed_bg.wasm', import.meta.url);
 
+/** A started module of the processor. */
+export interface Engine {
+  memory: WebAssembly.Memory;
+  Predictor: typeof Predictor;
+  /** How many threads compute, the page's own among them. */
+  threads: number;
+}
+
+/** Whether the browser has relaxed SIMD. */
+export const relaxedSimd = () => WebAssembly.validate(new Uint8Array(probe));
+
 const start = /* @__PURE__ */ starter(initialiseGlue);
 
 /**
  * Compiles and starts the processor's module, once per page, from the first call's source: a page that names `wasm`
  * alone gets that.
  */
-export function startModule({ wasm, relaxedWasm }: CpuSources): ReturnType<typeof start> {
-  const relaxed = WebAssembly.validate(new Uint8Array(probe));
-  if (relaxed && (relaxedWasm || !wasm)) return start(relaxedWasm ?? relaxedBeside());
-  return start(wasm ?? beside());
+export async function startModule({ wasm, relaxedWasm }: CpuSources): Promise<Engine> {
+  const relaxed = relaxedSimd() && (relaxedWasm || !wasm);
+  const { memory } = await start((relaxed ? relaxedWasm : wasm) ?? (relaxed ? relaxedBeside() : beside()));
+  return { memory, Predictor, threads: 1 };
 }
 
-/** Reads a model file [bytes] in the started module; `polish`: steps, if not the file's own number. */
-export function readModel(bytes: Uint8Array, polish?: number): Predictor {
+/** Reads a model file [bytes] in a started module; `polish`: steps, if not the file's own number. */
+export function readModel(engine: Engine, bytes: Uint8Array, polish?: number): Predictor {
   try {
-    return new Predictor(bytes, polish);
+    return new engine.Predictor(bytes, polish);
   } catch (cause) {
     throw fromCore(cause);
   }

@@ -1,6 +1,6 @@
 // A GPU in Node: what stands for WebGPU's module and for the browser's devices. It predicts nothing; its answers come
 // back when, and as, a test says.
-import { readModel, type Streams } from '../dist/raw.js';
+import { readModel, startModule, type Streams } from '../dist/raw.js';
 
 /** What a test decides, and what it may look at. */
 export const gpu = {
@@ -35,11 +35,11 @@ export class Gpu {
 }
 
 export class GpuModel {
-  static load(_: Gpu, file: Uint8Array): Promise<GpuModel> {
-    const predictor = readModel(file);
+  static async load(_: Gpu, file: Uint8Array): Promise<GpuModel> {
+    const predictor = readModel(await startModule({}), file);
     const numbers = 3 * predictor.vertex_count();
     predictor.free();
-    return Promise.resolve(new GpuModel(numbers));
+    return new GpuModel(numbers);
   }
 
   private constructor(private readonly numbers: number) {}

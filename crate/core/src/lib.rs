@@ -3,7 +3,9 @@
 //! `Model` (weights) + `BodyFrame` (pose) -> `network::forward` over a `Device` -> positions. `Predictor` ties them for
 //! the CPU.
 
-#![forbid(unsafe_code)]
+#![cfg_attr(not(feature = "threads"), forbid(unsafe_code))]
+// Allowed in `cpu/pool.rs` alone.
+#![deny(unsafe_code)]
 
 #[macro_use]
 pub mod operation;

@@ -3,6 +3,9 @@
 // On other targets there is no JavaScript.
 #![cfg(target_arch = "wasm32")]
 
+#[cfg(feature = "threads")]
+mod team;
+
 use ctsn_core::cpu::Level;
 use ctsn_core::model::HostModel;
 use ctsn_core::{Error, Shares};
@@ -64,7 +67,11 @@ impl Predictor {
     #[wasm_bindgen(constructor)]
     pub fn new(bytes: Vec<u8>, polish: Option<usize>) -> Result<Predictor, js_sys::Error> {
         let model = HostModel::parse(&bytes).map_err(|error| to_js(&error))?;
-        let inner = ctsn_core::Predictor::from_model(model.polish(polish), Level::new());
+        let model = model.polish(polish);
+        #[cfg(feature = "threads")]
+        let inner = ctsn_core::Predictor::on_threads(model, Level::new(), team::threads());
+        #[cfg(not(feature = "threads"))]
+        let inner = ctsn_core::Predictor::from_model(model, Level::new());
         let pose = vec![0.0; inner.joints().len() * 16];
         Ok(Self { inner, pose, failure: None })
     }

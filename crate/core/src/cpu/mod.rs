@@ -2,6 +2,8 @@
 //! The same source serves AVX2, NEON, wasm simd128 and the scalar level, which is the reference.
 
 pub mod limits;
+#[cfg(feature = "threads")]
+mod pool;
 mod threads;
 pub mod vector;
 

@@ -1,55 +1,94 @@
-//! Rows of an operation shared out over threads: each thread gets as many, one after the other, and scratch of its own.
-//! A row is computed by the same instructions whatever thread has it, so the numbers do not depend on how many there
-//! are.
+//! Rows of an operation shared out over threads: in parts, which each thread takes as it finds time, with scratch of its
+//! own. A row is computed by the same instructions whatever part it is in, so the numbers do not depend on how many
+//! threads there are.
 
+#[cfg(feature = "threads")]
+use super::pool::Pool;
 use std::ops::Range;
 #[cfg(feature = "threads")]
-use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+#[cfg(feature = "threads")]
+use std::sync::{Arc, Mutex};
 
-/// Rows that are worth a thread; also more than any tile of `linear`, which takes fewer rows one by one.
+/// Rows that are worth a part; also more than any tile of `linear`, which takes fewer rows one by one.
 #[cfg(feature = "threads")]
 const FEWEST: usize = 64;
+
+/// Parts for each thread: one that other programs hold up leaves its parts to the others.
+#[cfg(feature = "threads")]
+const PARTS: usize = 4;
 
 /// The threads that operations are shared out over: by default the caller's alone.
 #[derive(Clone, Default)]
 pub struct Threads {
     #[cfg(feature = "threads")]
-    pool: Option<Arc<rayon::ThreadPool>>,
+    pool: Option<Arc<Owned>>,
 }
 
+/// A pool whose threads end with it.
+#[cfg(feature = "threads")]
+struct Owned(Arc<Pool>);
+
+#[cfg(feature = "threads")]
+impl Drop for Owned {
+    fn drop(&mut self) {
+        self.0.close();
+    }
+}
+
+#[cfg(feature = "threads")]
 impl Threads {
-    /// `count` threads, which wait for work as long as this or a clone of it lives. The caller waits while they work.
-    /// For one thread there is none but the caller's.
+    /// Most of them.
+    pub const MOST: usize = 32;
+
+    /// `count` threads, [`Self::MOST`] at most, the caller's among them. The others wait for work as long as this or a
+    /// clone of it lives.
     ///
     /// # Errors
     /// The system gives no more threads.
-    #[cfg(feature = "threads")]
-    pub fn new(count: usize) -> Result<Self, rayon::ThreadPoolBuildError> {
-        let pool = || rayon::ThreadPoolBuilder::new().num_threads(count).build().map(Arc::new);
-        Ok(Self { pool: if count > 1 { Some(pool()?) } else { None } })
+    pub fn new(count: usize) -> std::io::Result<Self> {
+        let threads = Self::awaited(count);
+        for index in 1..threads.count() {
+            let serve = threads.server(index);
+            std::thread::Builder::new().spawn(serve)?;
+        }
+        Ok(threads)
     }
 
+    /// The same where threads are begun by others, as in a browser. Until they serve, the caller works alone.
+    pub fn awaited(count: usize) -> Self {
+        let count = count.min(Self::MOST);
+        Self { pool: (count > 1).then(|| Arc::new(Owned(Arc::new(Pool::new(count - 1))))) }
+    }
+
+    /// What a thread has to do to be the one of that `index`, from 1.
+    pub fn server(&self, index: usize) -> impl FnOnce() + Send + 'static {
+        let pool = self.pool.as_ref().map(|owned| owned.0.clone());
+        move || pool.iter().for_each(|pool| pool.serve(index))
+    }
+
+    /// How often one of the others has joined the caller in an operation.
+    pub fn joined(&self) -> usize {
+        self.pool.as_ref().map_or(0, |owned| owned.0.joined())
+    }
+
+    /// Says that one of them has panicked where nothing unwinds, so that the caller does not wait for it.
+    pub fn fail(&self) {
+        self.pool.iter().for_each(|owned| owned.0.fail());
+    }
+}
+
+impl Threads {
     /// How many compute.
     pub fn count(&self) -> usize {
         #[cfg(feature = "threads")]
         if let Some(pool) = &self.pool {
-            return pool.current_num_threads();
+            return pool.0.count();
         }
         1
     }
 
-    /// Does `work` on one of the threads. Once there, sharing out costs no change of threads: so a prediction is
-    /// entered as a whole. Now and then, every 63 times, this makes rayon allocate a block of its queue.
-    #[inline(always)]
-    pub fn enter<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
-        #[cfg(feature = "threads")]
-        if let Some(pool) = &self.pool {
-            return pool.install(work);
-        }
-        work()
-    }
-
-    /// Calls `work(rows, outputs of these rows, scratch)` for all `rows`, a part of them per thread. An output has the
+    /// Calls `work(rows, outputs of these rows, scratch)` for all `rows`, a part of them at a time. An output has the
     /// same number of values for each row. `scratch`: one for each thread.
     #[inline(always)]
     pub(super) fn share<const N: usize, S: Send>(
@@ -60,9 +99,10 @@ impl Threads {
         work: impl Fn(Range<usize>, [&mut [f32]; N], &mut S) + Sync,
     ) {
         #[cfg(feature = "threads")]
-        if self.count() > 1 && rows >= 2 * FEWEST {
-            let parts = self.count().min(rows / FEWEST);
-            return self.enter(|| fork(0..rows, outputs, &mut scratch[..parts], &work));
+        if let Some(pool) = &self.pool
+            && rows >= 2 * FEWEST
+        {
+            return share_out(&pool.0, rows, outputs, scratch, &work);
         }
         work(0..rows, outputs, &mut scratch[0]);
     }
@@ -75,29 +115,41 @@ pub(super) fn of<'a, T>(operand: &'a [T], rows: &Range<usize>, width: usize) -> 
     if cfg!(feature = "threads") { &operand[rows.start * width..rows.end * width] } else { operand }
 }
 
-/// As many parts as there is scratch. (`scope` and `broadcast` allocate at each call, `join` does not.)
+/// Rows and their outputs, until a thread takes them.
 #[cfg(feature = "threads")]
-fn fork<const N: usize, S: Send>(
-    rows: Range<usize>,
-    outputs: [&mut [f32]; N],
+type Part<'a, const N: usize> = Mutex<Option<(Range<usize>, [&'a mut [f32]; N])>>;
+
+/// No lock is ever waited for: a part is one thread's, and so is a room.
+#[cfg(feature = "threads")]
+fn share_out<const N: usize, S: Send>(
+    pool: &Pool,
+    rows: usize,
+    mut outputs: [&mut [f32]; N],
     scratch: &mut [S],
     work: &(impl Fn(Range<usize>, [&mut [f32]; N], &mut S) + Sync),
 ) {
-    if let [scratch] = scratch {
-        return work(rows, outputs, scratch);
-    }
-    let (parts, half) = (scratch.len(), scratch.len() / 2);
-    let (before, after) = scratch.split_at_mut(half);
-    let count = rows.len() * half / parts;
-    let middle = rows.start + count;
-    let mut rest: [&mut [f32]; N] = std::array::from_fn(|_| &mut [][..]);
-    let mut output = outputs.into_iter().zip(&mut rest);
-    let first: [&mut [f32]; N] = std::array::from_fn(|_| {
-        let (output, rest) = output.next().expect("as many outputs");
-        let width = output.len() / rows.len();
-        let (first, last) = output.split_at_mut(count * width);
-        *rest = last;
-        first
+    let count = (PARTS * pool.count()).min(rows / FEWEST);
+    let widths = std::array::from_fn::<_, N, _>(|output| outputs[output].len() / rows);
+    let parts: [Part<N>; PARTS * Threads::MOST] = std::array::from_fn(|part| {
+        let rows = rows * part / count..rows * (part + 1) / count;
+        Mutex::new((part < count).then(|| {
+            let mut output = outputs.iter_mut().zip(widths);
+            let outputs = std::array::from_fn(|_| {
+                let (output, width) = output.next().expect("as many outputs");
+                output.split_off_mut(..rows.len() * width).expect("as many rows")
+            });
+            (rows, outputs)
+        }))
     });
-    rayon::join(|| fork(rows.start..middle, first, before, work), || fork(middle..rows.end, rest, after, work));
+    let mut scratch = scratch.iter_mut();
+    let rooms: [_; Threads::MOST] = std::array::from_fn(|_| Mutex::new(scratch.next()));
+    let next = AtomicUsize::new(0);
+    pool.run(&|thread| {
+        let mut room = rooms[thread].lock().expect("its own");
+        let scratch = room.as_mut().expect("one for each thread");
+        while let Some(part) = parts.get(next.fetch_add(1, Ordering::Relaxed)) {
+            let Some((rows, outputs)) = part.lock().expect("its own").take() else { break };
+            work(rows, outputs, scratch);
+        }
+    });
 }

@@ -115,11 +115,6 @@ impl Predictor {
         shares: Shares,
     ) -> Result<()> {
         self.model.rig.read_column_major(joints, &mut self.activations.joints)?;
-        let threads = self.device.threads().clone();
-        threads.enter(|| self.run_folds(folds, (aim, step), shares))
-    }
-
-    fn run_folds(&mut self, folds: &mut Folds, (aim, step): (bool, f32), shares: Shares) -> Result<()> {
         self.weigh(shares);
         let (device, model, a) = (&mut self.device, &*self.model, &mut self.activations);
         pose(device, model, a);
@@ -140,11 +135,6 @@ impl Predictor {
     }
 
     fn run(&mut self, streams: Streams, shares: Shares) -> Result<()> {
-        let threads = self.device.threads().clone();
-        threads.enter(|| self.run_here(streams, shares))
-    }
-
-    fn run_here(&mut self, streams: Streams, shares: Shares) -> Result<()> {
         self.weigh(shares);
         let (device, model, a) = (&mut self.device, &*self.model, &mut self.activations);
         pose(device, model, a);

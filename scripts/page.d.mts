@@ -1,0 +1,10 @@
+export function withServer<Answer>(
+  folders: Record<string, string>,
+  body: (origin: string) => Promise<Answer>,
+  headers?: Record<string, string>,
+): Promise<Answer>;
+export function inPage<Argument, Answer>(
+  origin: string,
+  measure: (argument: Argument) => Promise<Answer>,
+  argument: Argument,
+): Promise<Answer>;
