@@ -1,5 +1,6 @@
 //! The binary `ctsn` on good and bad input: what is refused ends with exit code 1 and a message that names the thing.
 
+mod baked;
 mod interrupted;
 mod machine;
 mod made;
@@ -217,23 +218,6 @@ fn arguments_that_are_none_are_refused() {
         assert_eq!(output.status.code(), Some(2), "ctsn {arguments}");
         assert!(String::from_utf8_lossy(&output.stderr).contains("Usage"), "ctsn {arguments}");
     }
-}
-
-#[test]
-fn a_bake_keeps_to_its_garment() {
-    let folder = Folder::new();
-    write_character(&folder, |_| ());
-    write_garment(&folder, DVec3::ZERO);
-    let output = folder.run("bake character.glb garment.glb --kind robe -o out.safetensors");
-    let message = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.code() == Some(2) && message.contains("cannot be used with"), "{message}");
-    std::fs::create_dir_all(folder.path("out.work")).expect("a folder");
-    folder.write("out.work/garment.glb", b"made");
-    folder.write("out.work/garment.txt", b"character.glb of another cut");
-    folder.refuses(
-        "bake character.glb --kind robe -o out.safetensors",
-        &["out.work", "another garment", "of another cut", "Robe"],
-    );
 }
 
 /// Every file of a dataset that the machine has no say in, by its path.

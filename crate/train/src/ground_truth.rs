@@ -4,27 +4,29 @@
 
 mod level;
 pub mod noise;
+mod poses;
 mod request;
 mod shard;
+mod teacher;
 #[cfg(test)]
 mod tests;
 mod timing;
 
 use crate::dataset::{Record, Sample, Setup, Split, mixed_path, pose_path, twin_path};
-use crate::judging::check_same;
+use crate::judging::check_joints;
 use crate::{Error, Result};
 use ctsn_cloth::simulate::Simulator;
-use ctsn_core::cpu::Level;
-use ctsn_core::model::HostModel;
-use ctsn_core::{Predictor, Streams};
 use ctsn_rig::mixed::{has_limbs, mixed};
-use ctsn_rig::path::{body_frame, is_sound};
+use ctsn_rig::path::is_sound;
 use ctsn_rig::{Character, Pose, joints, numbers, vertices};
 use glam::DVec3;
+pub use poses::unsimulated;
 use rayon::prelude::*;
 pub use request::Request;
 pub use shard::Shard;
 use std::path::{Path, PathBuf};
+use std::time::Instant;
+use teacher::Teacher;
 pub use timing::Log;
 use timing::{Stopwatch, Timing};
 
@@ -52,6 +54,7 @@ pub struct Run<'a> {
     request: Request<'a>,
     folder: PathBuf,
     simulator: Simulator,
+    teacher: Option<Teacher<'a>>,
     /// `T_C` as the setup keeps it, metres [n].
     template: Vec<DVec3>,
     tasks: Vec<Task>,
@@ -78,26 +81,27 @@ impl<'a> Run<'a> {
         }
         let mut wanted = request.setup();
         if let Some(teacher) = request.teacher {
-            check_same(teacher, &wanted)?;
+            check_joints(teacher, &wanted)?;
         }
         let settings = request.settings.clone();
         let simulator = Simulator::new(request.character, request.garment, request.material.1, settings)?;
-        let setup = match Setup::read(folder)? {
+        let found = Setup::read(folder)?;
+        match &found {
             Some(found) => {
                 found.check_same(&wanted, folder)?;
-                found
+                wanted.template.clone_from(&found.template);
             }
-            None => {
-                wanted.template = numbers(&simulator.drape()?);
-                wanted.write(folder)?;
-                wanted
-            }
-        };
-        let template = vertices(&setup.template);
+            None => wanted.template = numbers(&simulator.drape()?),
+        }
+        let teacher = request.teacher.map(|model| Teacher::new(model, &wanted)).transpose()?;
+        if found.is_none() {
+            wanted.write(folder)?;
+        }
+        let template = vertices(&wanted.template);
         let mut tasks = tasks(&request, poses, folder);
         let all = tasks.len();
         tasks.retain(|task| !task.path.exists());
-        Ok(Self { found: all - tasks.len(), request, folder: folder.to_owned(), simulator, template, tasks })
+        Ok(Self { found: all - tasks.len(), request, folder: folder.to_owned(), simulator, teacher, template, tasks })
     }
 
     /// Poses, twins and mixed poses left to simulate.
@@ -105,12 +109,15 @@ impl<'a> Run<'a> {
         self.tasks.len()
     }
 
-    /// Simulates what is left. `progress(record, kind)` is called after every pose.
-    pub fn simulate(&self, progress: impl Fn(&Record, Kind) + Sync) -> Result<()> {
+    /// Simulates what is left, beginning no pose after `until`. `progress(record, kind)` is called after every pose.
+    pub fn simulate(&self, until: Option<Instant>, progress: impl Fn(&Record, Kind) + Sync) -> Result<()> {
         let timing = Timing::open(&self.folder, self.request.shard)?;
         let character = self.request.character;
         let learned = learned(character);
         let run = |task: &Task| -> Result<()> {
+            if until.is_some_and(|until| Instant::now() >= until) {
+                return Ok(());
+            }
             let start = Stopwatch::start();
             let frame = || &character.clips[task.clip].poses[task.frame];
             let pose = match task.kind {
@@ -118,9 +125,9 @@ impl<'a> Run<'a> {
                 Kind::Twin => noise::turned(character, frame(), task.clip, task.frame),
                 Kind::Mixed => mixed(character, &learned, task.frame),
             };
-            let outcome = match self.request.teacher {
+            let outcome = match &self.teacher {
                 None => self.simulator.simulate(&self.template, &pose),
-                Some(teacher) => match predicted(teacher, character, &pose) {
+                Some(teacher) => match teacher.predict(character, &pose, &self.template) {
                     Ok(start) => self.simulator.relax(&self.template, &pose, &start),
                     // Far outside of what it has seen a model may overflow; the simulator says so of its pose.
                     Err(_) => self.simulator.relax(&self.template, &pose, &[]),
@@ -137,14 +144,6 @@ impl<'a> Run<'a> {
     }
 }
 
-/// What `model` predicts for `pose`, body frame [n].
-fn predicted(model: &HostModel, character: &Character, pose: &Pose) -> Result<Vec<DVec3>> {
-    let mut predictor = Predictor::from_model(model.clone(), Level::new());
-    predictor.predict_row_major(&joints(pose), Streams::Both)?;
-    let into = body_frame(character, pose);
-    Ok(vertices(predictor.positions()).into_iter().map(|position| into.transform_point3(position)).collect())
-}
-
 /// The frames to train on. Mixed poses are made of these alone, so that unseen frames stay unseen.
 fn learned(character: &Character) -> Vec<&Pose> {
     let clips = &character.clips;
@@ -155,22 +154,27 @@ fn learned(character: &Character) -> Vec<&Pose> {
     frames.filter(|pose| is_sound(character, pose)).collect()
 }
 
-/// The poses and twins of the request's shard, in [`order`], then its mixed poses.
+/// The poses and twins of the request's shard, in [`order`], its mixed poses evenly among them.
 fn tasks(request: &Request, poses: usize, folder: &Path) -> Vec<Task> {
     let clips = request.character.clips.iter().enumerate();
     let frames: Vec<_> = clips.flat_map(|(clip, sampled)| (0..sampled.poses.len()).map(move |f| (clip, f))).collect();
-    let chosen = order(poses).into_iter().take(request.poses.unwrap_or(poses)).enumerate();
+    let chosen: Vec<usize> = order(poses).into_iter().take(request.poses.unwrap_or(poses)).collect();
+    let held = |count: usize| (0..count).filter(|number| request.shard.holds(*number));
+    // Each with the share of its kind that comes before.
     let mut tasks = Vec::new();
-    for (index, at) in chosen.filter(|(index, _)| request.shard.holds(*index)) {
-        let (clip, frame) = frames[at];
-        tasks.push(Task { kind: Kind::Frame, clip, frame, path: pose_path(folder, clip, frame) });
+    for index in held(chosen.len()) {
+        let ((clip, frame), share) = (frames[chosen[index]], index as f64 / chosen.len() as f64);
+        tasks.push((share, Task { kind: Kind::Frame, clip, frame, path: pose_path(folder, clip, frame) }));
         if index < request.twins {
-            tasks.push(Task { kind: Kind::Twin, clip, frame, path: twin_path(folder, clip, frame) });
+            tasks.push((share, Task { kind: Kind::Twin, clip, frame, path: twin_path(folder, clip, frame) }));
         }
     }
-    let mixed = |frame| Task { kind: Kind::Mixed, clip: 0, frame, path: mixed_path(folder, frame) };
-    tasks.extend((0..request.mixed).filter(|number| request.shard.holds(*number)).map(mixed));
-    tasks
+    for frame in held(request.mixed) {
+        let task = Task { kind: Kind::Mixed, clip: 0, frame, path: mixed_path(folder, frame) };
+        tasks.push((frame as f64 / request.mixed as f64, task));
+    }
+    tasks.sort_by(|a, b| a.0.total_cmp(&b.0));
+    tasks.into_iter().map(|(_, task)| task).collect()
 }
 
 /// Indices below `count`, ordered so that the first few, however many, are evenly spread: by the fractional part of

@@ -43,4 +43,23 @@ impl Smoother {
         }
         current
     }
+
+    /// The gradient of a number of smoothed positions [n, 3] -> that towards the positions [n, 3]: the transpose.
+    pub fn spread(&self, gradient: &[f32], steps: usize) -> Vec<f32> {
+        let mut current = gradient.to_vec();
+        for _ in 0..steps {
+            let before = current.clone();
+            for (i, gradient) in before.as_chunks::<3>().0.iter().enumerate() {
+                let neighbours = self.graph.of(i);
+                for c in 0..3 {
+                    if !neighbours.is_empty() {
+                        current[3 * i + c] -= 0.5 * gradient[c];
+                        let share = 0.5 * gradient[c] / neighbours.len() as f32;
+                        neighbours.iter().for_each(|j| current[*j as usize * 3 + c] += share);
+                    }
+                }
+            }
+        }
+        current
+    }
 }

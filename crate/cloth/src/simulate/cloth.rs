@@ -30,6 +30,10 @@ const GAP_SHARE: f64 = 0.2;
 /// cloth, came within a thousandth of the gap, where steps become too short to go on.
 const REPULSION: f64 = 1e7;
 
+/// Cloth of more vertices than this is fine: it travels coarse, and takes more steps with each factor. Smaller garments
+/// answer as they did before there was such a thing.
+const FINE: usize = 2500;
+
 impl Cloth {
     /// `warp`: direction of the warp per triangle. `shape` in 0..1 is the share of the rest mesh's own dihedral angles
     /// kept as rest angles (0: flat cloth).
@@ -46,6 +50,11 @@ impl Cloth {
             friction: material.friction,
             elastic,
         })
+    }
+
+    /// Whether it has so many vertices that it travels coarse.
+    pub fn is_fine(&self) -> bool {
+        self.elastic.masses.len() > FINE
     }
 
     /// Vertex groups that share an element: the cliques of the Hessian's pattern.

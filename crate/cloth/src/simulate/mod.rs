@@ -3,6 +3,7 @@
 
 mod burial;
 mod cloth;
+mod coarse;
 mod collider;
 mod contact;
 mod cover;
@@ -10,6 +11,7 @@ mod crossing;
 mod distance;
 mod elastic;
 mod grain;
+mod level;
 mod material;
 mod matrix;
 mod neighbourhood;
@@ -22,10 +24,12 @@ mod settings;
 mod simulator;
 mod transport;
 mod untangle;
+mod way;
 
 #[cfg(test)]
 mod tests;
 
+pub use coarse::Embedding;
 pub use distance::{BodyDistance, felt};
 pub use elastic::{Elastic, Hinge, Membrane, Triangle};
 pub use material::{Fabric, GRAVITY, Material};

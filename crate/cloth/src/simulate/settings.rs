@@ -57,7 +57,7 @@ impl Default for Settings {
             drift: 1e-4,
             lift: 0.005,
             pinched: 0.0,
-            stretch_limit: 1.5,
+            stretch_limit: 2.0,
             attached: Vec::new(),
             attachment: 10.0,
         }

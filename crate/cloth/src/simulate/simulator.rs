@@ -1,48 +1,41 @@
 //! Canonical drape and poses: transport along the fixed path, then relaxation to static equilibrium.
 //! A pose depends on nothing but itself; poses may run in parallel and come out bit for bit the same.
 
-use std::sync::Arc;
-
 use glam::{DAffine3, DVec3};
 
-use super::cloth::Cloth;
-use super::collider::{Collider, blend};
-use super::contact::Pin;
+use super::coarse::Coarse;
+use super::collider::Collider;
 use super::cover::{Cover, SLACK};
 use super::distance::BodyDistance;
 use super::grain::warp;
+use super::level::Level;
 use super::material::Material;
-use super::newton::{Layout, Probe, Solver};
+use super::newton::{Probe, Solver};
 use super::outcome::{Outcome, Status, stretch};
 use super::outer_skin::{outer_skin, smooth};
-use super::posed::PosedBody;
 use super::settings::Settings;
-use super::transport::transport;
 use super::untangle::untangle;
 use crate::wrap::SKIN;
 use crate::{Error, Result};
-use ctsn_core::topology::Graph;
-use ctsn_rig::path::{body_frame, is_sound, motion, path, to_body_frame};
-use ctsn_rig::{Character, Garment, Pose, SkinWeights, Surface};
+use ctsn_rig::path::{body_frame, is_sound, to_body_frame};
+use ctsn_rig::{Character, Garment, Mesh, Pose, Surface};
 
 /// How far from where the body passes into itself cloth is pinched by it, metres.
 const PINCH: f64 = 0.025;
 
 /// Simulates one garment on one character. Built once, used from any number of threads.
 pub struct Simulator {
-    character: Character,
+    pub(super) character: Character,
     rest: Vec<DVec3>,
-    pub(super) cloth: Cloth,
-    layout: Arc<Layout>,
+    pub(super) level: Level,
+    /// What a fine garment travels as.
+    coarse: Option<(Coarse, Level)>,
     /// The body's outer skin, which the cloth touches.
-    collider: Collider,
+    pub(super) collider: Collider,
     /// The body itself, which no kept pose may enter.
-    body: BodyDistance,
-    cover: Cover,
-    rings: Graph<Vec<u32>>,
-    /// Skin of each attached vertex: that of the closest body point.
-    attached: Vec<(usize, SkinWeights)>,
-    settings: Settings,
+    pub(super) body: BodyDistance,
+    pub(super) cover: Cover,
+    pub(super) settings: Settings,
 }
 
 impl Simulator {
@@ -50,7 +43,6 @@ impl Simulator {
     pub fn new(character: &Character, garment: &Garment, material: Material, settings: Settings) -> Result<Self> {
         let rest = garment.mesh.positions.clone();
         settings.check(rest.len())?;
-        let cloth = Cloth::new(&garment.mesh, &warp(garment), &material, settings.shape)?;
         // With limbs apart, as for the repair, two of three garments answered half a degree with more (7.9 -> 8.6, 7.0
         // -> 8.7, 8.3 -> 5.7 mm).
         let mut skin = outer_skin(character, &character.canonical_pose(), SKIN)?;
@@ -58,16 +50,24 @@ impl Simulator {
         let collider = Collider::new(character, &skin, &garment.mesh, settings.reach)?;
         let body = BodyDistance::new(character, &garment.mesh)?;
         let cover = Cover::new(&body.collider, &collider, SLACK);
-        let layout = Arc::new(Layout::new(&cloth, &[])?);
-        let attached = attach(&collider, &rest, &settings.attached);
-        let rings = garment.mesh.rings();
+        let level = |mesh: &Mesh, warp: &[DVec3], attached: &[u32]| {
+            Level::new(mesh, warp, &material, &settings, &collider, attached)
+        };
+        let warp = warp(garment);
+        let fine = level(&garment.mesh, &warp, &settings.attached)?;
+        let coarse = fine.cloth.is_fine().then(|| Coarse::new(&garment.mesh, &warp));
+        let coarse = coarse.map(|coarse| {
+            let level = level(&coarse.embedding.mesh, &coarse.warp, &coarse.restrict_vertices(&settings.attached))?;
+            Ok::<_, Error>((coarse, level))
+        });
+        let coarse = coarse.transpose()?;
         let character = Character { clips: Vec::new(), surface: Surface::default(), ..character.clone() };
-        Ok(Self { character, rest, cloth, layout, collider, body, cover, rings, attached, settings })
+        Ok(Self { character, rest, level: fine, coarse, collider, body, cover, settings })
     }
 
     /// The template `T_C`: the garment at rest on the canonical body, metres in canonical space [n].
     pub fn drape(&self) -> Result<Vec<DVec3>> {
-        let crossings = self.cloth.elements.crossings(&self.rest);
+        let crossings = self.level.cloth.elements.crossings(&self.rest);
         if let Some([a, b]) = crossings.first() {
             let count = crossings.len();
             let reason = format!(
@@ -77,8 +77,8 @@ impl Simulator {
         }
         let pose = self.character.canonical_pose();
         let body = self.collider.pose(&self.character.skinning(&pose));
-        let mut solver = Solver::new(&self.cloth, &self.layout, &self.settings, self.rest.clone());
-        self.pin(&mut solver, &self.rest, &self.character.skinning(&pose));
+        let mut solver = self.level.solver(&self.settings, self.rest.clone());
+        self.level.pin(&mut solver, &self.rest, &self.character.skinning(&pose));
         let relaxed = solver.relax(Some(&body), 10 * self.settings.relax_iterations);
         let Outcome { status, positions, .. } =
             self.outcome(solver, relaxed, &pose, body_frame(&self.character, &pose));
@@ -93,29 +93,12 @@ impl Simulator {
         if let Err(reason) = self.check(template, pose) {
             return self.refuse(reason);
         }
-        let poses = path(&self.character, pose, self.settings.path_steps);
-        let start = body_frame(&self.character, &self.character.canonical_pose());
-        let positions = template.iter().map(|p| start.transform_point3(*p)).collect();
-        let mut solver = Solver::new(&self.cloth, &self.layout, &self.settings, positions);
-        let end = self.character.skinning(&poses[self.settings.path_steps]);
-        let heights = self.cover.heights(&self.body.posed(pose), &self.collider, &end);
-        let mut body = self.collider.pose(&self.character.skinning(&poses[0]));
-        for (step, pair) in poses.windows(2).enumerate() {
-            transport(&mut solver, &body, &motion(&pair[0], &pair[1]), &self.rings);
-            let skinning = self.character.skinning(&pair[1]);
-            let way = (step + 1) as f64 / self.settings.path_steps as f64;
-            body = self.collider.raised(&skinning, &heights, way);
-            self.pin(&mut solver, template, &skinning);
-            let mut share = 0.0;
-            // Cloth that is held up by cloth gets more iterations.
-            for iteration in 0..3 * self.settings.path_iterations {
-                if iteration >= self.settings.path_iterations && share > 0.3 {
-                    break;
-                }
-                solver.probe(Some(&body), self.settings.path_time_step);
-                share = solver.advance(self.settings.path_time_step);
-            }
-        }
+        let way = self.way(pose);
+        let through = self.coarse.as_ref().and_then(|coarse| self.through(coarse, template, &way));
+        let (mut solver, body) = match through {
+            Some(refined) => refined,
+            None => self.travel(&self.level, template, &way),
+        };
         let relaxed = solver.relax(Some(&body), self.settings.relax_iterations);
         self.outcome(solver, relaxed, pose, DAffine3::IDENTITY)
     }
@@ -127,12 +110,12 @@ impl Simulator {
             return self.refuse(reason);
         }
         let mut positions = start.to_vec();
-        untangle(&self.cloth.elements, &self.rings, &mut positions);
-        let mut solver = Solver::new(&self.cloth, &self.layout, &self.settings, positions);
+        untangle(&self.level.cloth.elements, &self.level.rings, &mut positions);
+        let mut solver = self.level.solver(&self.settings, positions);
         let end = self.character.skinning(&to_body_frame(&self.character, pose));
         let heights = self.cover.heights(&self.body.posed(pose), &self.collider, &end);
         let body = self.collider.raised(&end, &heights, 1.0);
-        self.pin(&mut solver, template, &end);
+        self.level.pin(&mut solver, template, &end);
         let relaxed = solver.relax(Some(&body), self.settings.relax_iterations);
         self.outcome(solver, relaxed, pose, DAffine3::IDENTITY)
     }
@@ -152,16 +135,6 @@ impl Simulator {
             return Ok(());
         }
         Err(format!("{name}: wanted {} finite vertices, found {}", self.rest.len(), cloth.len()))
-    }
-
-    /// Springs of the attached vertices: their template positions, skinned.
-    fn pin(&self, solver: &mut Solver, template: &[DVec3], skinning: &[DAffine3]) {
-        let stiffness = self.settings.attachment;
-        let pin = |(vertex, skin): &(usize, SkinWeights)| {
-            let target = blend(skin, skinning).transform_point3(template[*vertex]);
-            Pin { vertex: *vertex, target, stiffness }
-        };
-        solver.pins = self.attached.iter().map(pin).collect();
     }
 
     fn judge(&self, outcome: &Outcome, inside: Inside) -> Status {
@@ -218,7 +191,7 @@ impl Simulator {
     /// `to_body`: from the solver's space to the body frame of `pose`.
     fn outcome(&self, solver: Solver, relaxed: Probe, pose: &Pose, to_body: DAffine3) -> Outcome {
         let from_body = to_body.inverse();
-        let crossings = |positions: &[DVec3]| self.cloth.elements.crossings(positions).len();
+        let crossings = |positions: &[DVec3]| self.level.cloth.elements.crossings(positions).len();
         let at_rest: Vec<DVec3> = solver.positions.iter().map(|p| to_body.transform_point3(*p)).collect();
         let mut placed = at_rest.clone();
         let mut lifted = self.body.lift(pose, &mut placed, self.settings.lift);
@@ -227,7 +200,7 @@ impl Simulator {
         if lifted == 0 || crossings(&positions) > crossings(&solver.positions) {
             (lifted, placed, positions) = (0, at_rest, solver.positions);
         }
-        let (stretch_p99, stretch_max) = stretch(&self.cloth, &positions);
+        let (stretch_p99, stretch_max) = stretch(&self.level.cloth, &positions);
         let mut outcome = Outcome {
             residual: relaxed.residual,
             drift: relaxed.drift,
@@ -248,7 +221,7 @@ impl Simulator {
     fn refuse(&self, reason: String) -> Outcome {
         let frame = body_frame(&self.character, &self.character.canonical_pose());
         let positions: Vec<DVec3> = self.rest.iter().map(|p| frame.transform_point3(*p)).collect();
-        let (stretch_p99, stretch_max) = stretch(&self.cloth, &positions);
+        let (stretch_p99, stretch_max) = stretch(&self.level.cloth, &positions);
         Outcome {
             positions,
             residual: f64::INFINITY,
@@ -273,14 +246,4 @@ struct Inside {
     pinched: usize,
     /// Least signed distance of the former, metres.
     least: f64,
-}
-
-/// Attached vertices with the skin of the body point closest to them.
-fn attach(collider: &Collider, rest: &[DVec3], attached: &[u32]) -> Vec<(usize, SkinWeights)> {
-    let body = PosedBody::new(collider, collider.body.mesh.positions.clone());
-    let skin = |&vertex: &u32| {
-        let hit = body.closest(rest[vertex as usize], None, f64::MAX.sqrt())?;
-        Some((vertex as usize, collider.skin(hit.face, hit.barycentric)))
-    };
-    attached.iter().filter_map(skin).collect()
 }

@@ -13,12 +13,12 @@ const WIDER: usize = 6;
 /// Steps of smoothing in a round.
 const STEPS: usize = 3;
 
-/// Smooths `x` [n] where triangles cross, until none do; some still may if that fails.
-pub(super) fn untangle(elements: &Elements, rings: &Graph<Vec<u32>>, x: &mut [DVec3]) {
+/// Smooths `x` [n] where triangles cross, until none do; whether none do.
+pub(super) fn untangle(elements: &Elements, rings: &Graph<Vec<u32>>, x: &mut [DVec3]) -> bool {
     for round in 0..ROUNDS {
         let crossings = elements.crossings(x);
         if crossings.is_empty() {
-            return;
+            return true;
         }
         let mut marked = vec![false; x.len()];
         for triangle in crossings.iter().flatten() {
@@ -37,6 +37,7 @@ pub(super) fn untangle(elements: &Elements, rings: &Graph<Vec<u32>>, x: &mut [DV
             }
         }
     }
+    elements.crossings(x).is_empty()
 }
 
 fn marked_indices(marked: &[bool]) -> impl Iterator<Item = usize> {

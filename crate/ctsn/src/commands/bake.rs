@@ -2,14 +2,26 @@
 
 use super::{evaluate, file_name, garment, simulate, train};
 use anyhow::{Context, Result, ensure};
+use ctsn_cast::motion;
 use ctsn_cloth::garment::Cut;
+use ctsn_rig::Character;
 use ctsn_rig::file::{read, write};
+use ctsn_rig::mixed::has_limbs;
 use ctsn_train::ground_truth::Shard;
+use ctsn_train::training::Settings;
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
-/// Character and garment in, model out: simulate → train → evaluate
+/// Character and garment in, model out: simulate → train → simulate from its predictions → train → evaluate
 ///
-/// Intermediate results are kept in a folder beside the model (MODEL.work), from which an interrupted bake continues.
+/// First a few poses are simulated along a path each, and a first model is trained on them: it is usable from then on.
+/// All others are relaxed from what it predicts, which is faster and chooses folds that a network can learn; on these
+/// the final model is trained. To the character's own clips, motion is generated where its skeleton has a known form,
+/// and poses are mixed. The unseen tenth is the end of that list: generated clips, where there are any.
+///
+/// The whole takes an hour (--time-budget), or as long as it takes with --epochs: then the result does not depend on
+/// the machine's speed. Intermediate results are kept in a folder beside the model (MODEL.work), from which an
+/// interrupted bake continues.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// Rigged character (glTF)
@@ -20,6 +32,9 @@ pub struct Arguments {
     /// Model file to write (safetensors)
     #[arg(short, long)]
     output: PathBuf,
+    /// Learn from the character's own clips alone, not from generated motion too
+    #[arg(long)]
+    own_motion: bool,
     #[command(flatten, next_help_heading = "Garment, where none is given")]
     cut: Cut,
     #[command(flatten, next_help_heading = "Simulation")]
@@ -28,23 +43,119 @@ pub struct Arguments {
     training: train::Training,
 }
 
+/// The whole of it, where neither a time nor a number of epochs is asked for.
+const BUDGET: Duration = Duration::from_secs(3600);
+/// Shares of the time budget that the steps take: poses along their paths, the first model, relaxed poses, the model.
+/// What is left is for the evaluation.
+const SHARES: [f64; 4] = [0.17, 0.05, 0.53, 0.22];
+/// Of how many poses to simulate one goes along its path, and is learned from by the first model; and how many such
+/// poses there are at least.
+const FIRST: usize = 5;
+const FEWEST: usize = 60;
+
 pub fn run(arguments: &Arguments) -> Result<()> {
-    let Arguments { character, garment, output, cut, options, training } = arguments;
-    let dataset = output.with_extension("work");
-    let garment = match garment {
+    let Arguments { output, cut, options, training, .. } = arguments;
+    let work = output.with_extension("work");
+    let garment = match &arguments.garment {
         Some(garment) => garment.clone(),
-        None => generated(character, cut, &dataset)?,
+        None => generated(&arguments.character, cut, &work)?,
     };
-    simulate::run(&simulate::Arguments {
-        character: character.clone(),
-        garment,
-        output: dataset.clone(),
-        shard: Shard::WHOLE,
-        options: options.clone(),
-    })?;
-    train::run(&train::Arguments { dataset: dataset.clone(), output: output.clone(), training: training.clone() })?;
+    let character = moving(arguments)?;
+    let asked = training.settings;
+    let counted = asked.epochs != Settings::default().epochs;
+    let budget = asked.budget.or((!counted).then_some(BUDGET));
+    let frames: usize = character.clips.iter().map(|clip| clip.poses.len()).sum();
+    let frames = options.poses.unwrap_or(frames).min(frames);
+    let mixable = options.mixed == 0 && has_limbs(&character);
+    let mixed = if mixable { frames / 2 } else { options.mixed };
+
+    let steps = Steps { character: &character, arguments, garment: &garment, budget };
+    let first = work.join("first.safetensors");
+    if !first.exists() {
+        let few = simulate::Options {
+            poses: Some(frames.div_ceil(FIRST).max(FEWEST).min(frames)),
+            mixed: 0,
+            noise_floor: 0,
+            ..options.clone()
+        };
+        steps.simulate(&few, &work.join("first"), SHARES[0])?;
+        steps.train(&work.join("first"), &first, SHARES[1])?;
+    }
+    if !output.exists() {
+        write(output, &read(&first)?)?;
+        println!("{}: a first model; a better one follows", file_name(output));
+    }
+    let many = simulate::Options { poses: Some(frames), mixed, from: Some(first), ..options.clone() };
+    steps.simulate(&many, &work, SHARES[2])?;
+    steps.train(&work, output, SHARES[3])?;
     let json = Some(output.with_extension("report.json"));
-    evaluate::run(&evaluate::Arguments { model: output.clone(), dataset, json, html: None })
+    evaluate::run(&evaluate::Arguments { model: output.clone(), dataset: work, json, html: None })
+}
+
+/// What all steps share.
+struct Steps<'a> {
+    character: &'a Character,
+    arguments: &'a Arguments,
+    garment: &'a Path,
+    budget: Option<Duration>,
+}
+
+impl Steps<'_> {
+    /// Simulates into a dataset, at most for this share of the time. A dataset that was finished in time is kept: with
+    /// more poses it would be another one, and all that follows would have to be done again.
+    fn simulate(&self, options: &simulate::Options, dataset: &Path, share: f64) -> Result<()> {
+        if self.budget.is_some() && dataset.join("report.json").exists() {
+            println!("{}: has been simulated already", dataset.display());
+            return Ok(());
+        }
+        let arguments = simulate::Arguments {
+            character: self.arguments.character.clone(),
+            garment: self.garment.to_owned(),
+            output: dataset.to_owned(),
+            shard: Shard::WHOLE,
+            options: options.clone(),
+        };
+        let until = self.budget.map(|budget| Instant::now() + budget.mul_f64(share));
+        simulate::along(self.character, &arguments, until)
+    }
+
+    fn train(&self, dataset: &Path, output: &Path, share: f64) -> Result<()> {
+        let mut training = self.arguments.training.clone();
+        training.settings.budget = self.budget.map(|budget| budget.mul_f64(share));
+        let (dataset, output) = (dataset.to_owned(), output.to_owned());
+        train::run(&train::Arguments {
+            dataset,
+            garment: None,
+            self_supervised: false,
+            teacher: false,
+            output,
+            training,
+        })
+    }
+}
+
+/// The character with its own clips, or those asked for, and behind them the generated ones.
+fn moving(arguments: &Arguments) -> Result<Character> {
+    let Arguments { character: path, options, .. } = arguments;
+    let mut character = simulate::character(path, options)?;
+    if arguments.own_motion {
+        return Ok(character);
+    }
+    match motion::clips(&character, options.rate) {
+        Ok(clips) => {
+            let known: Vec<String> = character.clips.iter().map(|clip| clip.name.clone()).collect();
+            character.clips.extend(clips.into_iter().filter(|clip| !known.contains(&clip.name)));
+            println!(
+                "{}: {} clips, {} of them generated",
+                file_name(path),
+                character.clips.len(),
+                character.clips.len() - known.len()
+            );
+        }
+        Err(reason) if character.clips.is_empty() => return Err(reason.into()),
+        Err(reason) => println!("{}: no motion is generated: {reason}", file_name(path)),
+    }
+    Ok(character)
 }
 
 /// The garment that `ctsn garment` makes. It is made once and kept beside the dataset, with a note of how it was cut.

@@ -6,9 +6,11 @@ use ctsn_cloth::garment;
 use ctsn_cloth::simulate::{Material, Settings};
 use ctsn_rig::Character;
 use ctsn_rig::gltf;
-use ctsn_train::ground_truth::{Kind, Request, Run, Shard};
+use ctsn_train::dataset::Dataset;
+use ctsn_train::ground_truth::{self, Kind, Request, Run, Shard};
 use ctsn_train::report::Report;
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 /// Simulate a garment on every frame of a character's clips
 ///
@@ -39,11 +41,14 @@ pub struct Arguments {
     pub options: Options,
 }
 
+/// Poses per second of the clips, where nothing else is asked for.
+const RATE: f64 = 10.0;
+
 /// Which poses, of what cloth.
 #[derive(clap::Args, Clone)]
 pub struct Options {
     /// Poses per second sampled from every clip
-    #[arg(long, default_value_t = 10.0)]
+    #[arg(long, default_value_t = RATE)]
     pub rate: f64,
     /// Simulate only this many of the frames, evenly spread over the clips; a greater number adds to them. Default: all
     #[arg(long, value_name = "N")]
@@ -71,16 +76,20 @@ pub struct Options {
 }
 
 pub fn run(arguments: &Arguments) -> Result<()> {
+    along(&character(&arguments.character, &arguments.options)?, arguments, None)
+}
+
+/// Simulates the clips of this form of the character, beginning no pose after `until`.
+pub fn along(character: &Character, arguments: &Arguments, until: Option<Instant>) -> Result<()> {
     let Arguments { options, output, shard, .. } = arguments;
     let material = Material::named(&options.material)?;
-    let character = character(&arguments.character, options)?;
-    let (garment, warnings) = garment::load(&arguments.garment, &character)?;
+    let (garment, warnings) = garment::load(&arguments.garment, character)?;
     warnings.iter().for_each(|warning| eprintln!("  {}: {warning}", arguments.garment.display()));
     let teacher = options.from.as_deref().map(model).transpose()?;
     let names = [file_name(&arguments.character), file_name(&arguments.garment)];
     println!("{} on {}: {} vertices", names[1], names[0], garment.mesh.positions.len());
     let request = Request {
-        character: &character,
+        character,
         garment: &garment,
         names: names.each_ref().map(String::as_str),
         material: (&options.material, material),
@@ -93,7 +102,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     };
     let work = Run::new(request, output)?;
     println!("{} poses to simulate, {} found done", work.left(), work.found);
-    follow(&work, &character)?;
+    follow(&work, character, until)?;
     let report = Report::new(output)?;
     report.write(output)?;
     println!("{report}");
@@ -103,8 +112,30 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     Ok(())
 }
 
+/// The frames of a character's clips in a garment of cotton, for a training without simulated poses.
+pub fn unsimulated(character: &Path, garment: &Path) -> Result<Dataset> {
+    let names = [file_name(character), file_name(garment)];
+    let character = gltf::read_character(character, RATE)?;
+    let (cloth, warnings) = garment::load(garment, &character)?;
+    warnings.iter().for_each(|warning| eprintln!("  {}: {warning}", garment.display()));
+    println!("{} on {}: {} vertices; draping it", names[1], names[0], cloth.mesh.positions.len());
+    let request = Request {
+        character: &character,
+        garment: &cloth,
+        names: names.each_ref().map(String::as_str),
+        material: ("cotton", Material::named("cotton")?),
+        settings: Settings { attached: cloth.pins.clone(), ..Settings::default() },
+        teacher: None,
+        shard: Shard::WHOLE,
+        poses: None,
+        mixed: 0,
+        twins: 0,
+    };
+    Ok(ground_truth::unsimulated(&request)?)
+}
+
 /// Reads a character with the chosen clips.
-fn character(path: &Path, options: &Options) -> Result<Character> {
+pub fn character(path: &Path, options: &Options) -> Result<Character> {
     if !(options.rate > 0.0 && options.rate <= 1000.0) {
         bail!("--rate: wanted more than 0 and at most 1000 poses per second, found {}", options.rate);
     }
@@ -118,10 +149,10 @@ fn character(path: &Path, options: &Options) -> Result<Character> {
 }
 
 /// Simulates with a progress bar; in a log file, with a line now and then.
-fn follow(work: &Run, character: &Character) -> Result<()> {
+fn follow(work: &Run, character: &Character, until: Option<Instant>) -> Result<()> {
     let bar = bar(work.left(), "simulate");
     let every = (work.left() as u64 / 20).max(1);
-    work.simulate(|record, kind| {
+    work.simulate(until, |record, kind| {
         bar.inc(1);
         if let Some(reason) = &record.rejected {
             let frame = record.frame;

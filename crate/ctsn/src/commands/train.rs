@@ -1,11 +1,11 @@
 //! `ctsn train`: the network from a dataset.
 
-use super::{bar, file_name, one_of};
+use super::{bar, file_name, one_of, simulate};
 use anyhow::{Context, Result, anyhow};
 use ctsn_core::model::{Body, Cut, HostModel, STEPS, Storage};
 use ctsn_rig::file;
 use ctsn_train::body::body;
-use ctsn_train::dataset::{Dataset, Setup, fingerprint};
+use ctsn_train::dataset::{Dataset, Sample, Setup, fingerprint};
 use ctsn_train::training::{self, Architecture, End, Files, Part, Row, Settings, Slices, Trainer, Variant};
 use std::path::{Path, PathBuf};
 
@@ -19,8 +19,21 @@ use std::path::{Path, PathBuf};
 /// stored anew from what was learned (MODEL.f32.safetensors), without training.
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// Dataset folder, as `ctsn simulate` leaves it
+    /// Dataset folder, as `ctsn simulate` leaves it; with --self-supervised, the character (glTF)
     pub dataset: PathBuf,
+    /// With --self-supervised, the garment (glTF)
+    #[arg(requires = "self_supervised")]
+    pub garment: Option<PathBuf>,
+    /// Learn without simulated poses: by the energy of the predicted cloth, its stretch, bending and weight, and of its
+    /// contact with the body, in the frames of the character's clips and in poses mixed of them. Such cloth lies
+    /// smoother than simulated cloth
+    #[arg(long, requires = "garment")]
+    pub self_supervised: bool,
+    /// Train a model to relax poses from (`ctsn simulate --from`): the simulated cloth says where it is, the energy of the
+    /// predicted cloth how it folds. It is farther from this truth than others, but nearly keeps its lengths, so truth
+    /// relaxed from it folds as it does
+    #[arg(long, conflicts_with = "self_supervised")]
+    pub teacher: bool,
     /// Model file to write (safetensors)
     #[arg(short, long)]
     pub output: PathBuf,
@@ -32,7 +45,7 @@ pub struct Arguments {
 #[derive(clap::Args, Clone)]
 pub struct Training {
     #[command(flatten)]
-    settings: Settings,
+    pub settings: Settings,
     #[command(flatten)]
     network: Architecture,
     /// Parts of the network to leave out, for ablations: skeleton,mesh,weights
@@ -46,14 +59,28 @@ pub struct Training {
 const STORAGES: &[(&str, &str, Storage)] =
     &[("f32", "32-bit floats", Storage::F32), ("f16", "16-bit floats, half the bytes", Storage::F16)];
 
+/// What makes a trainer, by its losses.
+type By = fn(HostModel, &Setup, &[&Sample], Settings) -> ctsn_train::Result<Trainer>;
+
 pub fn run(arguments: &Arguments) -> Result<()> {
     let Arguments { output, training: asked, .. } = arguments;
-    let dataset = Dataset::read(&arguments.dataset)?;
-    let slices = training::slices(&dataset)?;
+    let dataset = match &arguments.garment {
+        Some(garment) => simulate::unsimulated(&arguments.dataset, garment)?,
+        None => Dataset::read(&arguments.dataset)?,
+    };
+    let slices = match arguments.self_supervised {
+        true => Slices { train: dataset.samples.iter().collect(), mixed: 0, validation: Vec::new() },
+        false => training::slices(&dataset)?,
+    };
     let files = Files { checkpoint: output.with_extension("checkpoint"), curve: output.with_extension("curve.csv") };
     // Before the training: an unusable body must not be found out after hours.
     let body = body(&dataset.setup, &slices.train)?;
-    let mut trainer = asked.trainer(&dataset.setup, &slices, body)?;
+    let by: By = match arguments {
+        Arguments { self_supervised: true, .. } => Trainer::self_supervised,
+        Arguments { teacher: true, .. } => Trainer::teacher,
+        _ => Trainer::new,
+    };
+    let mut trainer = asked.trainer(by, &dataset.setup, &slices, body)?;
     let key = key(&dataset.setup, &slices, &trainer)?;
     // What was learned, exactly, whatever the storage asked for.
     let learned = output.with_extension("f32.safetensors");
@@ -70,7 +97,8 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         (End::Diverged(error), None) => Err(error.into()),
         (_, None) => Err(anyhow!("no epoch was trained: wanted at least one")),
         (end, Some((best, model))) => {
-            let silent = training::is_mesh_silent(&model, &slices.validation)?;
+            let seen = if arguments.self_supervised { &slices.train } else { &slices.validation };
+            let silent = training::is_mesh_silent(&model, seen)?;
             // A training that diverged may be tried again.
             let key = Some(key).filter(|_| !matches!(end, End::Diverged(_)));
             let summary = asked.summary(&dataset.setup, &slices, &trainer, &best, key);
@@ -123,7 +151,7 @@ fn key(setup: &Setup, slices: &Slices, trainer: &Trainer) -> Result<String> {
 
 impl Training {
     /// A trainer that has not begun.
-    fn trainer(&self, setup: &Setup, slices: &Slices, body: Body<Vec<f32>, Vec<u32>>) -> Result<Trainer> {
+    fn trainer(&self, by: By, setup: &Setup, slices: &Slices, body: Body<Vec<f32>, Vec<u32>>) -> Result<Trainer> {
         let variant = Variant::without(&self.without);
         let architecture = variant.sizes(self.network);
         let mut model = training::initial(setup, &slices.train, architecture, self.settings.seed)?;
@@ -137,7 +165,7 @@ impl Training {
             model.sizes.vertices
         );
         let settings = Settings { variant, ..self.settings };
-        Ok(Trainer::new(model, setup, &slices.train, settings)?)
+        Ok(by(model, setup, &slices.train, settings)?)
     }
 
     /// What the model file says of its training. Nothing in it depends on the time of day.
@@ -155,8 +183,8 @@ impl Training {
             "seed": self.settings.seed,
             "loss_metres": best.loss("fine"),
             "untrained_validation_metres": trainer.untrained,
-            "validation_metres": best.distance,
-            "validation_degrees": best.normal,
+            "validation_metres": trainer.untrained.map(|_| best.distance),
+            "validation_degrees": trainer.untrained.map(|_| best.normal),
             "key": key,
             "ctsn": env!("CARGO_PKG_VERSION"),
         });
@@ -198,6 +226,11 @@ fn fit(trainer: &mut Trainer, slices: &Slices, files: &Files) -> Result<End> {
 
 fn errors(row: &Row) -> String {
     let Row { distance, normal, .. } = row;
-    let loss = row.loss("fine").map_or(String::new(), |fine| format!("loss {:.2} mm, ", fine * 1e3));
+    let energies = ["energy", "contact"].map(|name| row.loss(name).map(|value| format!("{name} {value:.3} J, ")));
+    let energies: String = energies.into_iter().flatten().collect();
+    let loss = row.loss("fine").map_or(energies, |fine| format!("loss {:.2} mm, ", fine * 1e3));
+    if !row.is_judged() {
+        return format!("{loss}no truth");
+    }
     format!("{loss}E_dist {:.2} mm, E_norm {normal:.2}°", distance * 1e3)
 }

@@ -85,10 +85,10 @@ fn a_dataset_knows_whose_predictions_its_poses_were_relaxed_from() {
         let refused = found.check_same(&by(other), folder.path()).unwrap_err().to_string();
         assert!(refused.contains("predictions"), "{refused}");
     }
-    // The model is of other cloth.
+    // The model is of other joints.
     let run = Run::new(Request { teacher: Some(&first), ..request(&character, &garment) }, &folder.path().join("data"));
     let refused = run.err().expect("refused").to_string();
-    assert!(refused.contains("not the model's"), "{refused}");
+    assert!(refused.contains("its joints are not the model's"), "{refused}");
 }
 
 fn request<'a>(character: &'a Character, garment: &'a Garment) -> Request<'a> {

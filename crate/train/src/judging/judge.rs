@@ -6,6 +6,7 @@ use crate::dataset::{Sample, Setup};
 use crate::{Error, Result};
 use ctsn_cloth::simulate::BodyDistance;
 use ctsn_core::cpu::Cpu;
+use ctsn_core::model::HostModel;
 use ctsn_core::operation::Normals;
 use ctsn_core::topology::Graph;
 use ctsn_rig::mesh::bounds;
@@ -150,16 +151,26 @@ impl<'a> Judge<'a> {
 }
 
 /// Refuses a model whose cloth or joints are not those of the dataset of `setup`.
-pub fn check_same(model: &ctsn_core::model::HostModel, setup: &Setup) -> Result<()> {
+pub fn check_same(model: &HostModel, setup: &Setup) -> Result<()> {
     let size = |vertices: usize, triangles: &[u32]| format!("{vertices} vertices, {} triangles", triangles.len() / 3);
     let wanted = size(model.sizes.vertices, &model.triangles);
     let found = size(setup.template.len() / 3, &setup.triangles);
     if wanted != found {
         return Err(Error::Dataset(format!("its cloth is not the model's: wanted {wanted}; found {found}")));
     }
-    if model.triangles != setup.triangles {
+    if !is_same_cloth(model, setup) {
         return Err(Error::Dataset("its cloth is not the model's: as many triangles, of other vertices".to_owned()));
     }
+    check_joints(model, setup)
+}
+
+/// Whether the model's cloth is the very mesh of the dataset.
+pub fn is_same_cloth(model: &HostModel, setup: &Setup) -> bool {
+    model.rest.len() == setup.template.len() && model.triangles == setup.triangles
+}
+
+/// Refuses a model whose joints are not those of the dataset of `setup`.
+pub fn check_joints(model: &HostModel, setup: &Setup) -> Result<()> {
     let (wanted, found) = (&model.rig.joints, &setup.description.joints);
     if wanted != found {
         let pairs = || wanted.iter().zip(found);

@@ -17,7 +17,9 @@ use ctsn_rig::vertices;
 pub use errors::{Errors, Statistic};
 pub use folds::{FoldErrors, FrameFolds};
 use glam::DVec3;
-pub use judge::{Judge, PoseErrors, Run, body_distance, check_same, differences, vertex_errors};
+pub use judge::{
+    Judge, PoseErrors, Run, body_distance, check_joints, check_same, differences, is_same_cloth, vertex_errors,
+};
 use rayon::prelude::*;
 use serde::Serialize;
 

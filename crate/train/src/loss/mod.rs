@@ -3,9 +3,12 @@
 //! frame, y up. network.md §6.
 
 mod coarse;
+mod contact;
 mod distance;
+mod energy;
 mod fine;
 mod penetration;
+mod smooth;
 
 use crate::Result;
 use crate::dataset::Setup;
@@ -13,8 +16,15 @@ use crate::training::Variant;
 use ctsn_core::model::HostModel;
 use ctsn_core::pose::BodyFrame;
 
-/// Every loss.
+/// Every loss of a training on simulated poses.
 pub const LOSSES: &[Term] = &[coarse::COARSE, fine::FINE, penetration::PENETRATION];
+
+/// Every loss of a training without truth: the sum is what a simulation minimises.
+pub const SELF_SUPERVISED: &[Term] = &[energy::ENERGY, contact::CONTACT];
+
+/// Every loss of a teacher, from whose predictions truth is relaxed: the simulated poses say where the cloth is, its own
+/// energy how it folds.
+pub const TEACHER: &[Term] = &[smooth::SMOOTH, energy::ENERGY, contact::CONTACT];
 
 /// One term of the sum: what the list tells of a loss.
 #[derive(Clone, Copy, Debug)]
@@ -122,6 +132,11 @@ impl Losses {
 /// The weighted sum of the values' magnitudes: what must not explode. An energy may be negative.
 pub(crate) fn magnitude(terms: &[Term], values: &[f32]) -> f32 {
     terms.iter().zip(values).map(|(term, value)| term.weight * value.abs()).sum()
+}
+
+/// The weighted sum of the values.
+pub(crate) fn sum(terms: &[Term], values: &[f32]) -> f32 {
+    terms.iter().zip(values).map(|(term, value)| term.weight * value).sum()
 }
 
 /// Names and values, for messages.

@@ -3,9 +3,9 @@
 //! a skirt, 1.5 % of the vertices are inside the body in unseen poses without this loss, 1.2 where it is of the
 //! simulated poses alone, 0.9 with others, all with a weight of 1.)
 
-use super::{Loss, Prediction, Scene, Term};
+use super::{Loss, Prediction, Term};
 use ctsn_core::cpu::Cpu;
-use ctsn_core::model::Body;
+use ctsn_core::model::{Body, HostModel};
 use ctsn_core::network::{expose, push};
 use ctsn_core::operation::Space;
 use ctsn_core::pose::BodyFrame;
@@ -24,14 +24,11 @@ pub(super) const PENETRATION: Term = Term {
     constants: &[],
     simulated: &[Prediction::Coarse, Prediction::Whole],
     unsimulated: &[Prediction::Coarse],
-    new: |Scene { model, .. }| {
-        let made = |body| Box::new(Penetration::new(body, model.sizes.vertices)) as Box<dyn Loss>;
-        Ok(model.body.as_ref().map(made))
-    },
+    new: |scene| Ok(Penetration::of(scene.model).map(|body| Box::new(body) as Box<dyn Loss>)),
 };
 
 /// The body of one pose after the other; one per thread.
-struct Penetration {
+pub(super) struct Penetration {
     body: Body<Vec<f32>, Vec<u32>>,
     cpu: Cpu,
     posed: Vec<f32>,
@@ -42,11 +39,24 @@ struct Penetration {
 }
 
 impl Penetration {
+    /// Of a model's body and cloth; none where it has no body.
+    pub fn of(model: &HostModel) -> Option<Self> {
+        model.body.as_ref().map(|body| Self::new(body, model.sizes.vertices))
+    }
+
     /// Room for a body and its cloth.
     fn new(body: &Body<Vec<f32>, Vec<u32>>, n: usize) -> Self {
         let room = |vertices: usize| vec![0.0; vertices * 3];
         let [posed, normals, exposed] = std::array::from_fn(|_| room(body.vertices));
         Self { body: body.clone(), cpu: Cpu::new(), posed, normals, exposed, cloth: room(n), push: room(n) }
+    }
+
+    /// What each vertex of `predicted` [n, 3] lacks to the gap around the body posed last [n, 3].
+    pub fn lacks(&mut self, predicted: &[f32]) -> &[f32] {
+        let Self { body, cpu, normals, exposed, cloth, push: lacks, .. } = self;
+        cloth.copy_from_slice(predicted);
+        push(cpu, body, [exposed, normals, cloth], lacks);
+        lacks
     }
 }
 
@@ -59,10 +69,8 @@ impl Loss for Penetration {
 
     /// Mean over the vertices of what `predicted` lacks to the gap around the body.
     fn value(&mut self, predicted: &[f32], _: &[f32], scale: f32, gradient: &mut [f32]) -> f32 {
-        let Self { body, cpu, normals, exposed, cloth, push: lacks, .. } = self;
-        cloth.copy_from_slice(predicted);
-        push(cpu, body, [exposed, normals, cloth], lacks);
-        let count = cloth.len() as f32 / 3.0;
+        let count = predicted.len() as f32 / 3.0;
+        let lacks = self.lacks(predicted);
         let mut total = 0.0_f64;
         for (push, g) in lacks.as_chunks::<3>().0.iter().zip(gradient.as_chunks_mut::<3>().0) {
             let length = push.iter().map(|d| d * d).sum::<f32>().sqrt();
@@ -76,14 +84,14 @@ impl Loss for Penetration {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use ctsn_core::model::Skinning;
     use glam::Vec3;
 
-    #[test]
-    fn cloth_inside_the_body_is_told_the_way_out() {
-        // An octahedron with its edges halved, all on the unit sphere, on one joint that stays where it is.
+    /// An octahedron with its edges halved, all on the unit sphere, on one joint that stays where it is, and its
+    /// vertices times a radius as cloth.
+    pub fn ball() -> (Penetration, impl Fn(f32) -> Vec<f32>) {
         let axes = [Vec3::X, Vec3::Y, Vec3::Z, -Vec3::X, -Vec3::Y, -Vec3::Z];
         let faces: [[usize; 3]; 8] =
             [[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3, 1, 5], [4, 3, 5], [0, 4, 5]];
@@ -101,18 +109,25 @@ mod tests {
             triangles.extend([a, ab, ca, ab, b, bc, ca, bc, c, ab, bc, ca].map(|corner| corner as u32));
         }
         let n = points.len();
-        let at = |radius: f32| points.iter().flat_map(|point| (radius * point).to_array()).collect::<Vec<f32>>();
+        let at = move |radius: f32| points.iter().flat_map(|point| (radius * point).to_array()).collect::<Vec<f32>>();
         let skin = Skinning { joints: vec![0; n], weights: vec![1.0; n], width: 1 };
         let body = Body::new(at(1.0), skin, triangles, (0..n as u32).collect());
         let mut body_frame = BodyFrame::new(1);
         (0..3).for_each(|axis| body_frame.transforms[5 * axis] = 1.0);
         let mut penetration = Penetration::new(&body, n);
         penetration.pose(&body_frame);
+        (penetration, at)
+    }
+
+    #[test]
+    fn cloth_inside_the_body_is_told_the_way_out() {
+        let (mut penetration, at) = ball();
+        let n = at(1.0).len();
         let mut learn = |radius: f32| {
-            let mut g = vec![5.0; 3 * n];
+            let mut g = vec![5.0; n];
             (penetration.value(&at(radius), &[], 0.5, &mut g), g)
         };
-        assert_eq!(learn(1.01), (0.0, vec![5.0; 3 * n]), "outside, nothing is added");
+        assert_eq!(learn(1.01), (0.0, vec![5.0; n]), "outside, nothing is added");
         let ((deep, g), (deeper, _)) = (learn(0.95), learn(0.94));
         assert!((0.03..0.06).contains(&deep) && deeper > deep, "{deep} m, {deeper} m");
         let slope: f32 = g.iter().zip(at(0.94).iter().zip(at(0.95))).map(|(g, (b, a))| (g - 5.0) * (b - a)).sum();

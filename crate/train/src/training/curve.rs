@@ -13,7 +13,7 @@ pub struct Row {
     pub epoch: usize,
     /// Name and mean of each loss over the epoch.
     pub losses: Vec<(String, f32)>,
-    /// E_dist on the validation slice, metres.
+    /// E_dist on the validation slice, metres; the weighted sum of the losses in a training without truth.
     pub distance: f32,
     /// E_norm on the validation slice, degrees.
     pub normal: f32,
@@ -27,6 +27,11 @@ pub struct Row {
 const LOSS: &str = "_loss";
 
 impl Row {
+    /// Whether there was a truth to compare with.
+    pub fn is_judged(&self) -> bool {
+        ["fine", "smooth"].iter().any(|name| self.loss(name).is_some())
+    }
+
     /// The mean of the loss of that name.
     pub fn loss(&self, name: &str) -> Option<f32> {
         self.losses.iter().find(|(known, _)| known == name).map(|(_, value)| *value)

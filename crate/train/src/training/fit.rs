@@ -5,7 +5,7 @@ use super::item::Item;
 use super::step::Worker;
 use super::{Trainer, curve};
 use crate::dataset::Sample;
-use crate::loss::{magnitude, told};
+use crate::loss::{magnitude, sum, told};
 use crate::{Error, Result};
 use curve::Row;
 use rayon::prelude::*;
@@ -59,19 +59,19 @@ impl Trainer {
 
     /// One epoch and its validation, noted in the curve.
     pub(super) fn round(&mut self, validation: &[&Sample]) -> Result<Row> {
-        let untrained = match self.untrained {
-            Some(error) => error,
-            None => self.validate(validation)?.0,
-        };
-        self.untrained = Some(untrained);
+        if self.untrained.is_none() && !validation.is_empty() {
+            self.untrained = Some(self.validate(validation)?.0);
+        }
         let losses = self.epoch(|_, _, _| {})?;
-        let (distance, normal) = self.validate(validation)?;
+        let (distance, normal) =
+            if validation.is_empty() { (sum(&self.terms, &losses), 0.0) } else { self.validate(validation)? };
         let first = self.first.unwrap_or(f32::INFINITY);
         if magnitude(&self.terms, &losses) > EXPLOSION * first || !distance.is_finite() {
             let told = told(&self.terms, &losses);
             return Err(Error::Diverged(format!(
-                "epoch {}: {told}; validation error {distance} m, {untrained} m before training",
-                self.epoch
+                "epoch {}: {told}; validation error {distance} m, {} m before training",
+                self.epoch,
+                self.untrained.unwrap_or_default()
             )));
         }
         let rate = self.rate(self.epoch * self.steps());

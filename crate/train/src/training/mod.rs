@@ -23,7 +23,7 @@ mod variant;
 mod weights;
 
 use crate::dataset::{Sample, Setup, digest, fingerprint};
-use crate::loss::{LOSSES, Losses, Scene, Term, magnitude, told};
+use crate::loss::{LOSSES, Losses, SELF_SUPERVISED, Scene, TEACHER, Term, magnitude, told};
 use crate::{Error, Result};
 use adam::schedule;
 use ctsn_core::model::{HostModel, Storage};
@@ -121,6 +121,16 @@ impl Trainer {
     /// Prepares training of `model` on `samples` by [`LOSSES`].
     pub fn new(model: HostModel, setup: &Setup, samples: &[&Sample], settings: Settings) -> Result<Self> {
         Self::with(model, None, LOSSES, setup, samples, settings)
+    }
+
+    /// Prepares training by [`TEACHER`].
+    pub fn teacher(model: HostModel, setup: &Setup, samples: &[&Sample], settings: Settings) -> Result<Self> {
+        Self::with(model, None, TEACHER, setup, samples, settings)
+    }
+
+    /// Prepares training without truth, by [`SELF_SUPERVISED`]; what the samples hold as such is not read.
+    pub fn self_supervised(model: HostModel, setup: &Setup, samples: &[&Sample], settings: Settings) -> Result<Self> {
+        Self::with(model, None, SELF_SUPERVISED, setup, samples, settings)
     }
 
     /// The same by other `losses`, or where a network makes some of the model's arrays.

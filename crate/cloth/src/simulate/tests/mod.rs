@@ -9,6 +9,7 @@ mod hostile;
 mod layers;
 mod obstacle;
 mod pose;
-mod scene;
+pub(super) mod scene;
 mod sphere;
 mod through;
+mod wrinkles;

@@ -52,6 +52,20 @@ fn skirt_follows_the_legs_to_equilibrium() {
     }
 }
 
+/// 2,976 vertices travel as 1,500.
+#[test]
+fn a_fine_skirt_follows_the_legs_to_equilibrium() {
+    let character = legs();
+    let simulator = simulator(&character, skirt(96, 30), 96).unwrap();
+    let template = simulator.drape().unwrap();
+    let pose = stride(&character, 50.0, 40.0, 10.0);
+    let simulate = || simulator.simulate(&template, &pose);
+    let (first, second) = rayon::join(simulate, simulate);
+    assert_eq!(first, second, "bits");
+    assert!(first.converged() && first.crossings == 0, "{:?}", first.status);
+    assert!(first.residual < 1e-2 && first.least_distance > 0.0 && first.stretch_max < 1.2);
+}
+
 #[test]
 fn from_a_start_near_it_a_pose_comes_to_the_same_rest() {
     let character = legs();

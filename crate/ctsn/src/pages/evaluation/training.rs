@@ -2,7 +2,7 @@
 
 use crate::pages::html::chart::{Chart, Series};
 use ctsn_rig::Result;
-use ctsn_train::loss::LOSSES;
+use ctsn_train::loss::{LOSSES, TEACHER};
 use ctsn_train::training::curve::{Row, read};
 use std::path::Path;
 
@@ -22,8 +22,11 @@ pub fn curves(path: &Path) -> Result<Vec<Chart<'static>>> {
         chart("mm", true, vec![validation]),
         chart("degrees", false, vec![series("E_norm, validation poses", &|row| row.normal, 1.0)]),
     ];
+    if rows.first().is_some_and(|row| !row.is_judged()) {
+        charts.clear();
+    }
     for (i, (name, _)) in rows.first().map_or(&[][..], |row| &row.losses).iter().enumerate() {
-        let term = LOSSES.iter().find(|term| term.name == name);
+        let term = LOSSES.iter().chain(TEACHER).find(|term| term.name == name);
         let unit = term.map_or("", |term| term.unit);
         let (unit, scale) = if unit == "m" { ("mm", 1e3) } else { (unit, 1.0) };
         let loss = series(term.map_or(name, |term| term.title), &|row| row.losses[i].1, scale);

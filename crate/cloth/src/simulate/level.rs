@@ -1,0 +1,75 @@
+//! A garment at one fineness, ready to be simulated.
+
+use std::sync::Arc;
+
+use ctsn_core::topology::Graph;
+use ctsn_rig::{Mesh, SkinWeights};
+use glam::{DAffine3, DVec3};
+
+use super::cloth::Cloth;
+use super::collider::{Collider, blend};
+use super::contact::Pin;
+use super::material::Material;
+use super::newton::{Layout, Solver};
+use super::posed::PosedBody;
+use super::settings::Settings;
+use crate::Result;
+
+/// A garment of `n` vertices.
+pub(super) struct Level {
+    pub cloth: Cloth,
+    pub layout: Arc<Layout>,
+    /// Neighbours of each vertex.
+    pub rings: Graph<Vec<u32>>,
+    /// Skin of each attached vertex: that of the closest body point.
+    attached: Vec<(usize, SkinWeights)>,
+    /// Stiffness of the spring at each of them, N/m.
+    attachment: f64,
+}
+
+impl Level {
+    /// Of a garment at rest, where it is worn in the canonical pose; `attached` of its vertices are sprung to the body.
+    pub fn new(
+        mesh: &Mesh,
+        warp: &[DVec3],
+        material: &Material,
+        settings: &Settings,
+        collider: &Collider,
+        attached: &[u32],
+    ) -> Result<Self> {
+        let cloth = Cloth::new(mesh, warp, material, settings.shape)?;
+        // Fewer springs that hold as much in all.
+        let attachment = settings.attachment * (settings.attached.len() as f64 / attached.len().max(1) as f64);
+        Ok(Self {
+            layout: Arc::new(Layout::new(&cloth, &[])?),
+            rings: mesh.rings(),
+            attached: attach(collider, &mesh.positions, attached),
+            attachment,
+            cloth,
+        })
+    }
+
+    /// The garment at `positions`, at rest.
+    pub fn solver<'a>(&'a self, settings: &'a Settings, positions: Vec<DVec3>) -> Solver<'a> {
+        Solver::new(&self.cloth, &self.layout, settings, positions)
+    }
+
+    /// Springs of the attached vertices: their template positions, skinned.
+    pub fn pin(&self, solver: &mut Solver, template: &[DVec3], skinning: &[DAffine3]) {
+        let pin = |(vertex, skin): &(usize, SkinWeights)| {
+            let target = blend(skin, skinning).transform_point3(template[*vertex]);
+            Pin { vertex: *vertex, target, stiffness: self.attachment }
+        };
+        solver.pins = self.attached.iter().map(pin).collect();
+    }
+}
+
+/// Attached vertices with the skin of the body point closest to them.
+fn attach(collider: &Collider, rest: &[DVec3], attached: &[u32]) -> Vec<(usize, SkinWeights)> {
+    let body = PosedBody::new(collider, collider.body.mesh.positions.clone());
+    let skin = |&vertex: &u32| {
+        let hit = body.closest(rest[vertex as usize], None, f64::MAX.sqrt())?;
+        Some((vertex as usize, collider.skin(hit.face, hit.barycentric)))
+    };
+    attached.iter().filter_map(skin).collect()
+}

@@ -1,0 +1,43 @@
+//! `ctsn bake`: its steps, and what it keeps between them.
+
+use super::made::{Folder, write_character, write_garment};
+
+use glam::DVec3;
+
+#[test]
+fn a_bake_keeps_to_its_garment() {
+    let folder = Folder::new();
+    write_character(&folder, |_| ());
+    write_garment(&folder, DVec3::ZERO);
+    let output = folder.run("bake character.glb garment.glb --kind robe -o out.safetensors");
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.code() == Some(2) && message.contains("cannot be used with"), "{message}");
+    std::fs::create_dir_all(folder.path("out.work")).expect("a folder");
+    folder.write("out.work/garment.glb", b"made");
+    folder.write("out.work/garment.txt", b"character.glb of another cut");
+    folder.refuses(
+        "bake character.glb --kind robe -o out.safetensors",
+        &["out.work", "another garment", "of another cut", "Robe"],
+    );
+}
+
+#[test]
+fn a_bake_learns_from_paths_and_then_from_its_own_predictions() {
+    let folder = Folder::new();
+    folder.accepts("character sphere -o sphere.glb");
+    let bake = "bake sphere.glb --kind sheet --vertices 500 --poses 70 --epochs 2 -o out.safetensors";
+    let told = folder.accepts(bake);
+    for part in ["out.safetensors: a first model", "unseen frames", "plain skinning"] {
+        assert!(told.contains(part), "wanted {part:?} in {told}");
+    }
+    let teacher = |data: &str| {
+        let setup = ctsn_train::dataset::Setup::read(&folder.path(data)).expect("readable").expect("a setup");
+        setup.description.teacher
+    };
+    assert!(teacher("out.work/first").is_none() && teacher("out.work").is_some());
+    let [first, model] = ["out.work/first.safetensors", "out.safetensors"].map(|name| std::fs::read(folder.path(name)));
+    assert_ne!(first.expect("a model"), *model.as_ref().expect("a model"), "the second learned from other poses");
+    let again = folder.accepts(bake);
+    assert!(again.contains("0 poses to simulate") && again.contains("has been trained so already"), "{again}");
+    assert_eq!(std::fs::read(folder.path("out.safetensors")).ok(), model.ok());
+}
