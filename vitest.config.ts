@@ -20,7 +20,11 @@ export default defineConfig({
       // The same where the engine has no relaxed SIMD.
       {
         extends: true,
-        test: { name: 'simd128', include: ['web/tests/{model,quality,allocation}.test.ts'], setupFiles: ['web/tests/simd128.ts'] },
+        test: {
+          name: 'simd128',
+          include: ['model', 'quality', 'allocation'].map((name) => `web/tests/${name}.test.ts`),
+          setupFiles: ['web/tests/simd128.ts'],
+        },
       },
       // The exported network, in another runtime on Node.
       { extends: true, test: { name: 'onnx', include: ['tests/onnx/*.test.ts'] } },

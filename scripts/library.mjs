@@ -33,7 +33,10 @@ const sharedMemory = {
   optimiser: ['--enable-relaxed-simd', '--enable-threads'],
 };
 
-/** The processor's module, the same for relaxed SIMD, and with threads, and WebGPU's: package, name of the glue and of the module. */
+/**
+ * The processor's module, the same for relaxed SIMD, and with threads, and WebGPU's: package, name of the glue and of
+ * the module.
+ */
 const modules = [
   { package: 'ctsn-wasm', glue: 'ctsn', name: 'ctsn', features: simd128 },
   { package: 'ctsn-wasm', glue: 'ctsn', name: 'ctsn_relaxed', features: relaxedSimd },

@@ -13,8 +13,8 @@ const isolated = {
 };
 
 /**
- * Runs `body(origin)` while `folders`, { '/prefix/': folder }, are served there, with those headers; every other address
- * is an empty page.
+ * Runs `body(origin)` while `folders`, { '/prefix/': folder }, are served there, with those headers; every other
+ * address is an empty page.
  */
 export async function withServer(folders, body, headers = isolated) {
   const server = createServer((request, response) => {

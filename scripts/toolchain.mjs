@@ -14,8 +14,8 @@ export async function ensurePackages() {
 }
 
 /**
- * cargo, with the pinned toolchain of rust-toolchain.toml, the target wasm32-unknown-unknown, and the standard library's
- * source for the module with threads.
+ * cargo, with the pinned toolchain of rust-toolchain.toml, the target wasm32-unknown-unknown, and the standard
+ * library's source for the module with threads.
  */
 export async function ensureRust() {
   const cargo = await run('cargo', ['--version'], { capture: true });

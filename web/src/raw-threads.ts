@@ -18,7 +18,8 @@ const newWorker = () => new Worker(new URL('./thread.js', import.meta.url), { ty
 let starting: Promise<Engine> | undefined;
 
 /**
- * Compiles and starts the module on `threads` threads, the page's own among them: once per page, as the first call says.
+ * Compiles and starts the module on so many threads, the page's own among them: once per page, as the first call
+ * says.
  */
 export function startThreads(threads: number, source?: WasmSource): Promise<Engine> {
   starting ??= start(threads, source ?? beside());

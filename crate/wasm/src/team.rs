@@ -26,7 +26,7 @@ pub fn enlist(count: usize) -> usize {
 /// Works as thread `index`, from 1. Never returns: only in a worker.
 #[wasm_bindgen]
 pub fn serve(index: usize) {
-    threads().server(index)();
+    threads().serve(index);
 }
 
 /// How often a worker has joined the page's thread in an operation.

@@ -5,9 +5,10 @@
 
 use std::cell::UnsafeCell;
 use std::hint::spin_loop;
-use std::sync::OnceLock;
+use std::io;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::thread::{Thread, current, panicking, park};
+use std::sync::{Arc, OnceLock};
+use std::thread::{Builder, Thread, current, panicking, park, yield_now};
 
 /// Set in `guests` while the task may be begun.
 const OPEN: usize = 1 << (usize::BITS - 1);
@@ -15,6 +16,17 @@ const OPEN: usize = 1 << (usize::BITS - 1);
 /// How often a thread looks for the next task before it sleeps: longer than what lies between two tasks of one
 /// prediction, because waking takes as long as a task.
 const LOOKS: usize = 20_000;
+
+/// Waits a moment. The system has other threads run now and then, where there is one: a thread of the pool may have no
+/// core. Always false.
+fn turn(look: usize) -> bool {
+    if look % 64 == 63 {
+        yield_now()
+    } else {
+        spin_loop()
+    }
+    false
+}
 
 type Task<'a> = dyn Fn(usize) + Sync + 'a;
 
@@ -37,9 +49,10 @@ pub struct Pool {
     closed: AtomicBool,
 }
 
-// SAFETY: `task` is written by the one caller that has `taken` the pool, while `guests` is 0. It is read only by threads
-// that have counted themselves in `guests` while it was OPEN, that is after the writing (release, acquire), and the
-// caller writes again, or lets the task die, only after it has closed it and seen them all leave (release, acquire).
+// SAFETY: `task` is written by the one caller that has `taken` the pool, while `guests` is 0. It is read only by
+// threads that have counted themselves in `guests` while it was OPEN, that is after the writing (release, acquire), and
+// the caller writes again, or lets the task die, only after it has closed it and seen them all leave (release,
+// acquire).
 unsafe impl Sync for Pool {}
 // SAFETY: what `task` refers to is `Sync`, and nothing in here belongs to a thread.
 unsafe impl Send for Pool {}
@@ -69,8 +82,8 @@ impl Pool {
         self.joined.load(Ordering::Relaxed)
     }
 
-    /// Calls `task(0)` here and `task(i)` on those of the threads `i` that come before it has returned; returns when all
-    /// calls have. So `task` must share its work out as long as there is some. A thread may call it more than once.
+    /// Calls `task(0)` here and `task(i)` on those of the threads `i` that come before it has returned; returns when
+    /// all calls have. So `task` must share its work out as long as there is some. A thread may call it more than once.
     pub fn run(&self, task: &Task) {
         if self.taken.swap(true, Ordering::Acquire) {
             return task(0);
@@ -86,6 +99,18 @@ impl Pool {
         drop(round);
     }
 
+    /// Begins the threads that there is room for.
+    ///
+    /// # Errors
+    /// The system gives no more threads.
+    pub fn spawn(self: &Arc<Self>) -> io::Result<()> {
+        for index in 1..self.count() {
+            let pool = self.clone();
+            Builder::new().spawn(move || pool.serve(index))?;
+        }
+        Ok(())
+    }
+
     /// Works as thread `index`, from 1, until [`Self::close`].
     ///
     /// # Panics
@@ -95,12 +120,7 @@ impl Pool {
         let mut seen = 0;
         while !self.closed.load(Ordering::Acquire) {
             let news = || self.round.load(Ordering::Acquire) != seen || self.closed.load(Ordering::Acquire);
-            if !(0..LOOKS).any(|_| {
-                news() || {
-                    spin_loop();
-                    false
-                }
-            }) {
+            if !(0..LOOKS).any(|look| news() || turn(look)) {
                 park();
                 continue;
             }
@@ -137,9 +157,8 @@ impl Drop for Round<'_> {
         pool.guests.fetch_and(!OPEN, Ordering::AcqRel);
         let failed = || pool.failed.load(Ordering::Acquire);
         // Where nothing unwinds a thread that has panicked never leaves.
-        while pool.guests.load(Ordering::Acquire) != 0 && !(cfg!(panic = "abort") && failed()) {
-            spin_loop();
-        }
+        let busy = |_: &usize| pool.guests.load(Ordering::Acquire) != 0 && !(cfg!(panic = "abort") && failed());
+        (0..).take_while(busy).for_each(|look| _ = turn(look));
         assert!(panicking() || !failed(), "a thread of the pool has panicked");
         pool.taken.store(false, Ordering::Release);
     }
@@ -160,15 +179,11 @@ impl Drop for Guest<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::sync::Arc;
     use std::sync::atomic::AtomicU32;
 
     fn pool(threads: usize) -> Arc<Pool> {
         let pool = Arc::new(Pool::new(threads));
-        for index in 1..=threads {
-            let pool = pool.clone();
-            std::thread::spawn(move || pool.serve(index));
-        }
+        pool.spawn().expect("threads");
         pool
     }
 

@@ -1,5 +1,5 @@
-//! Rows of an operation shared out over threads: in parts, which each thread takes as it finds time, with scratch of its
-//! own. A row is computed by the same instructions whatever part it is in, so the numbers do not depend on how many
+//! Rows of an operation shared out over threads: in parts, which each thread takes as it finds time, with scratch of
+//! its own. A row is computed by the same instructions whatever part it is in, so the numbers do not depend on how many
 //! threads there are.
 
 #[cfg(feature = "threads")]
@@ -48,10 +48,7 @@ impl Threads {
     /// The system gives no more threads.
     pub fn new(count: usize) -> std::io::Result<Self> {
         let threads = Self::awaited(count);
-        for index in 1..threads.count() {
-            let serve = threads.server(index);
-            std::thread::Builder::new().spawn(serve)?;
-        }
+        threads.pool.iter().try_for_each(|pool| pool.0.spawn())?;
         Ok(threads)
     }
 
@@ -61,10 +58,10 @@ impl Threads {
         Self { pool: (count > 1).then(|| Arc::new(Owned(Arc::new(Pool::new(count - 1))))) }
     }
 
-    /// What a thread has to do to be the one of that `index`, from 1.
-    pub fn server(&self, index: usize) -> impl FnOnce() + Send + 'static {
+    /// Has the thread that calls this be the one of that `index`, from 1, until the last clone is gone.
+    pub fn serve(&self, index: usize) {
         let pool = self.pool.as_ref().map(|owned| owned.0.clone());
-        move || pool.iter().for_each(|pool| pool.serve(index))
+        pool.iter().for_each(|pool| pool.serve(index));
     }
 
     /// How often one of the others has joined the caller in an operation.
