@@ -83,10 +83,10 @@ async function watch(program, args) {
 const numbers = (bytes) => new Float32Array(Uint8Array.from(bytes).buffer);
 
 /** Ours, natively. */
-async function native({ ctsn, index }) {
+async function native({ ctsn, index, threads }) {
   const out = path.join(folder, 'out.safetensors');
   const args = ['predict', path.join(folder, `${index}.safetensors`), path.join(folder, 'poses.safetensors'), '-o', out];
-  const { output, memory } = await watch(ctsn, args);
+  const { output, memory } = await watch(ctsn, [...args, '--threads', String(threads)]);
   const [, load, each] = /after ([\d.]+) ms, then ([\d.]+) ms each/.exec(output);
   const bytes = readFileSync(out);
   const start = 8 + Number(bytes.readBigUInt64LE());
@@ -112,9 +112,11 @@ const page = (engine) => async ({ origin, index, threads }) => {
 /** In the order in which they take their turns; positions are compared with those of the first. */
 const engines = [
   { name: 'ctsn', place: 'native', threads: 1, measure: native },
+  { name: 'ctsn', place: 'native', threads: 2, measure: native },
   { name: 'onnxruntime', place: 'native', threads: 1, measure: onnxruntime },
   { name: 'onnxruntime', place: 'native', threads: 2, measure: onnxruntime },
   { name: 'ctsn', place: 'Chromium', threads: 1, measure: page('ctsn') },
+  { name: 'ctsn', place: 'Chromium', threads: 2, measure: page('ctsn') },
   { name: 'onnxruntime-web', place: 'Chromium', threads: 1, measure: page('onnxruntime-web') },
   { name: 'onnxruntime-web', place: 'Chromium', threads: 2, measure: page('onnxruntime-web') },
 ];

@@ -29,9 +29,9 @@ pub struct Arguments {
     /// smoother than simulated cloth
     #[arg(long, requires = "garment")]
     pub self_supervised: bool,
-    /// Train a model to relax poses from (`ctsn simulate --from`): the simulated cloth says where it is, the energy of the
-    /// predicted cloth how it folds. It is farther from this truth than others, but nearly keeps its lengths, so truth
-    /// relaxed from it folds as it does
+    /// Train a model to relax poses from (`ctsn simulate --from`): the simulated cloth says where it is, the energy of
+    /// the predicted cloth how it folds. It is farther from this truth than others, but nearly keeps its lengths, so
+    /// truth relaxed from it folds as it does
     #[arg(long, conflicts_with = "self_supervised")]
     pub teacher: bool,
     /// Model file to write (safetensors)

@@ -1,5 +1,5 @@
-//! A dataset that nobody simulated, for a training without truth: the drape, and poses in which plain skinning stands for
-//! the cloth.
+//! A dataset that nobody simulated, for a training without truth: the drape, and poses in which plain skinning stands
+//! for the cloth.
 
 use super::Request;
 use crate::Result;

@@ -22,8 +22,8 @@ pub const LOSSES: &[Term] = &[coarse::COARSE, fine::FINE, penetration::PENETRATI
 /// Every loss of a training without truth: the sum is what a simulation minimises.
 pub const SELF_SUPERVISED: &[Term] = &[energy::ENERGY, contact::CONTACT];
 
-/// Every loss of a teacher, from whose predictions truth is relaxed: the simulated poses say where the cloth is, its own
-/// energy how it folds.
+/// Every loss of a teacher, from whose predictions truth is relaxed: the simulated poses say where the cloth is, its
+/// own energy how it folds.
 pub const TEACHER: &[Term] = &[smooth::SMOOTH, energy::ENERGY, contact::CONTACT];
 
 /// One term of the sum: what the list tells of a loss.

@@ -16,8 +16,8 @@ pub struct Embedding {
 }
 
 impl Embedding {
-    /// Of the `fine` garment on the `coarse` one, both at rest in the same place: each vertex on the nearest triangle of
-    /// those that face as it does, so that it does not change the layer.
+    /// Of the `fine` garment on the `coarse` one, both at rest in the same place: each vertex on the nearest triangle
+    /// of those that face as it does, so that it does not change the layer.
     pub fn new(coarse: Mesh, fine: &Mesh) -> Self {
         let faces: Vec<DVec3> = coarse.corners().map(cross).collect();
         let normals = fine.normals(&fine.positions);
