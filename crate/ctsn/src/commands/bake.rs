@@ -1,7 +1,7 @@
 //! `ctsn bake`: simulate, train and evaluate in one go.
 
 use super::{evaluate, file_name, garment, simulate, train};
-use anyhow::{Context, Result, ensure};
+use anyhow::{Context, Result, bail, ensure};
 use ctsn_cast::motion;
 use ctsn_cloth::garment::Cut;
 use ctsn_rig::Character;
@@ -152,7 +152,9 @@ fn moving(arguments: &Arguments) -> Result<Character> {
                 character.clips.len() - known.len()
             );
         }
-        Err(reason) if character.clips.is_empty() => return Err(reason.into()),
+        Err(reason) if character.clips.is_empty() => {
+            bail!("{} has no clip, wanted at least one; and none can be generated: {reason}", path.display());
+        }
         Err(reason) => println!("{}: no motion is generated: {reason}", file_name(path)),
     }
     Ok(character)
