@@ -110,6 +110,8 @@ params! {
     Polish { vertices: u32, rate: f32, momentum: f32 }
     /// `Params` of skin.wgsl.
     Skin { vertices: u32, width: u32, back: u32, world: u32 }
+    /// `Params` of slide.wgsl.
+    Slide { vertices: u32, rate: f32 }
     /// `Params` of spread.wgsl.
     Spread { vertices: u32, follow: f32 }
     /// `Params` of surface.wgsl.
@@ -162,6 +164,8 @@ shaders! {
     SETTLE: Collide, "settle" + ["collide.foot", "collide.walk", "collide.triangle"], [Read Read Read Read Read Read Write], [64, 1];
     /// Rest, joints, weights, transforms -> positions.
     SKIN: Skin, "skin" + [], [Read Read Read Read Write], [64, 1];
+    /// Offsets, neighbours, squares, share, positions, push, before -> after.
+    SLIDE: Slide, "slide" + [], [Read Read Read Read Read Read Read Write], [64, 1];
     /// Offsets, neighbours, push, before -> after.
     SPREAD: Spread, "spread" + [], [Read Read Read Read Write], [64, 1];
     /// Vertex, positions, normals -> drawn positions, drawn normals.

@@ -224,6 +224,27 @@ operations! { $
         after: W,
     }
 
+    /// One round in which displaced cloth takes back the lengths it was cut to, and what must move still reaches what
+    /// it needs.
+    Slide<R, W, I> {
+        /// Where the neighbours of each vertex start [n + 1].
+        offsets: I,
+        /// Neighbours [edges].
+        neighbours: I,
+        /// Squared length of the edge to each of them [edges].
+        squares: R,
+        /// Share of the mesh stream [1].
+        share: R,
+        /// Cloth before it is displaced [n, 3].
+        positions: R,
+        /// What each vertex needs at least [n, 3].
+        push: R,
+        /// Displacement before the round [n, 3].
+        before: R,
+        /// After it [n, 3].
+        after: W,
+    }
+
     /// Displaces the cloth, and brings to its gap what that carried into another part of the body.
     Settle<R, W, I> {
         /// The body as [`Bury`] leaves it [b, 3].
@@ -273,6 +294,7 @@ impl Operation<usize, usize, usize> {
             // A walk, and six triangles around its end.
             Self::Collide(it) => it.positions / 3 * (WALK + 6 * 60),
             Self::Spread(it) => 3 * it.neighbours + 20 * (it.push / 3),
+            Self::Slide(it) => 21 * it.neighbours + 24 * (it.push / 3),
             // One vertex in twenty or so is looked at again, from its neighbours' neighbours, too.
             Self::Settle(it) => it.positions / 3 * ((WALK + 8 * 36 + 6 * 60) / 20),
         }

@@ -31,6 +31,7 @@ pub mod repair {
     pub mod eight;
     pub mod rings;
     pub mod settle;
+    pub mod slide;
     pub mod spread;
 }
 

@@ -2,12 +2,14 @@
 
 use super::{Activations, DeviceModel, skin};
 use crate::device::Device;
-use crate::model::Body;
-use crate::operation::{Bury, Collide, Normals, Settle, Space, Spread};
+use crate::model::{Body, Cut};
+use crate::operation::{Bury, Collide, Normals, Settle, Slide, Space, Spread};
 use crate::topology::Graph;
 
 /// Rounds in which what is pushed out takes its neighbours along.
 const ROUNDS: usize = 2;
+/// Pairs of rounds in which cloth that is polished slides into its lengths.
+const SLIDES: usize = 2;
 
 /// Intermediate results of the repair.
 pub struct Collision<B> {
@@ -36,8 +38,8 @@ impl<B> Collision<B> {
     }
 }
 
-/// Moves the predicted positions; nothing happens where the model has no body.
-pub fn collide<D: Device>(device: &mut D, model: &DeviceModel<D>, a: &mut Activations<D::Buffer>) {
+/// Moves the predicted positions, which have been polished or not; nothing happens where the model has no body.
+pub fn collide<D: Device>(device: &mut D, model: &DeviceModel<D>, polished: bool, a: &mut Activations<D::Buffer>) {
     let (Some(body), Some(c)) = (&model.body, &mut a.collision) else { return };
     expose(device, body, &a.body_frame, Space::World, [&mut c.body, &mut c.normals, &mut c.exposed]);
     push(device, body, [&c.exposed, &c.normals, &a.positions], &mut c.push);
@@ -45,6 +47,15 @@ pub fn collide<D: Device>(device: &mut D, model: &DeviceModel<D>, a: &mut Activa
     let [first, second] = &mut c.displacement;
     device.run(Spread { offsets, neighbours, push: &c.push, before: &c.push, after: &mut *first }.into());
     device.run(Spread { offsets, neighbours, push: &c.push, before: first, after: &mut *second }.into());
+    if let (Some(Cut { squares, .. }), true) = (&model.cut, polished) {
+        let (share, positions, push) = (&a.mesh_share, &a.positions, &c.push);
+        for _ in 0..SLIDES {
+            let (before, after) = (&*second, &mut *first);
+            device.run(Slide { offsets, neighbours, squares, share, positions, push, before, after }.into());
+            let (before, after) = (&*first, &mut *second);
+            device.run(Slide { offsets, neighbours, squares, share, positions, push, before, after }.into());
+        }
+    }
     let settle = Settle {
         exposed: &c.exposed,
         normals: &c.normals,

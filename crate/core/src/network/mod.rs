@@ -159,7 +159,7 @@ pub(crate) fn repair<D: Device>(
     a: &mut Activations<D::Buffer>,
 ) {
     if streams != Streams::None {
-        collide(device, model, a);
+        collide(device, model, streams == Streams::Both, a);
     }
 }
 

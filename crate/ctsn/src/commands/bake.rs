@@ -8,6 +8,7 @@ use ctsn_rig::Character;
 use ctsn_rig::file::{read, write};
 use ctsn_rig::mixed::has_limbs;
 use ctsn_train::ground_truth::Shard;
+use ctsn_train::report::Report;
 use ctsn_train::training::Settings;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -72,13 +73,9 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let steps = Steps { character: &character, arguments, garment: &garment, budget };
     let first = work.join("first.safetensors");
     if !first.exists() {
-        let few = simulate::Options {
-            poses: Some(frames.div_ceil(FIRST).max(FEWEST).min(frames)),
-            mixed: 0,
-            noise_floor: 0,
-            ..options.clone()
-        };
-        steps.simulate(&few, &work.join("first"), SHARES[0])?;
+        let few = frames.div_ceil(FIRST).max(FEWEST).min(frames);
+        let along = simulate::Options { poses: Some(few), mixed: 0, noise_floor: 0, ..options.clone() };
+        steps.simulate(&along, &work.join("first"), SHARES[0])?;
         steps.train(&work.join("first"), &first, SHARES[1])?;
     }
     if !output.exists() {
@@ -101,22 +98,40 @@ struct Steps<'a> {
 }
 
 impl Steps<'_> {
-    /// Simulates into a dataset, at most for this share of the time. A dataset that was finished in time is kept: with
-    /// more poses it would be another one, and all that follows would have to be done again.
-    fn simulate(&self, options: &simulate::Options, dataset: &Path, share: f64) -> Result<()> {
-        if self.budget.is_some() && dataset.join("report.json").exists() {
-            println!("{}: has been simulated already", dataset.display());
-            return Ok(());
-        }
-        let arguments = simulate::Arguments {
+    fn simulation(&self, options: &simulate::Options, dataset: &Path) -> simulate::Arguments {
+        simulate::Arguments {
             character: self.arguments.character.clone(),
             garment: self.garment.to_owned(),
             output: dataset.to_owned(),
             shard: Shard::WHOLE,
             options: options.clone(),
+        }
+    }
+
+    /// Simulates into a dataset for this share of the time; longer where a training wants more poses. A dataset that
+    /// was finished in time is kept: with more poses it would be another, and all that follows had to be done again.
+    fn simulate(&self, options: &simulate::Options, dataset: &Path, share: f64) -> Result<()> {
+        let Some(budget) = self.budget else {
+            return simulate::along(self.character, &self.simulation(options, dataset), None);
         };
-        let until = self.budget.map(|budget| Instant::now() + budget.mul_f64(share));
-        simulate::along(self.character, &arguments, until)
+        if dataset.join("report.json").exists() && Report::new(dataset)?.kept >= FEWEST {
+            println!("{}: has been simulated already", dataset.display());
+            return Ok(());
+        }
+        let until = Instant::now() + budget.mul_f64(share);
+        let all = options.poses.unwrap_or(usize::MAX);
+        let mut poses = FEWEST.min(all);
+        loop {
+            let enough = simulate::Options { poses: Some(poses), mixed: 0, ..options.clone() };
+            simulate::along(self.character, &self.simulation(&enough, dataset), None)?;
+            let kept = Report::new(dataset)?.kept;
+            if kept >= FEWEST || poses == all {
+                break;
+            }
+            // As many are left out of the next ones.
+            poses = (poses + (FEWEST - kept) * poses / kept.max(1)).min(all);
+        }
+        simulate::along(self.character, &self.simulation(options, dataset), Some(until))
     }
 
     fn train(&self, dataset: &Path, output: &Path, share: f64) -> Result<()> {

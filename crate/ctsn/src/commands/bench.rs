@@ -170,7 +170,7 @@ impl Timed {
             .run(operation::BodyFrame { rig, joints, transforms: &mut room.body_frame, vector: &mut room.pose }.into());
         forward(device, model, Streams::Both, Space::World, room);
         let start = Instant::now();
-        collide(device, model, room);
+        collide(device, model, true, room);
         self.repair.push(start.elapsed().as_secs_f64() * 1e3);
         Ok(())
     }

@@ -41,3 +41,13 @@ fn a_bake_learns_from_paths_and_then_from_its_own_predictions() {
     assert!(again.contains("0 poses to simulate") && again.contains("has been trained so already"), "{again}");
     assert_eq!(std::fs::read(folder.path("out.safetensors")).ok(), model.ok());
 }
+
+#[test]
+fn a_bake_in_too_little_time_still_makes_a_model() {
+    let folder = Folder::new();
+    folder.accepts("character sphere -o sphere.glb");
+    let told =
+        folder.accepts("bake sphere.glb --kind sheet --vertices 500 --poses 62 --time-budget 2s -o out.safetensors");
+    // A fifth of the poses is left out: more than the budget has time for were simulated, until enough were kept.
+    assert!(told.contains("62 poses") && told.contains("unseen frames"), "{told}");
+}

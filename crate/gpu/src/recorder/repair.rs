@@ -3,8 +3,8 @@
 use super::{Id, IndexId, Record, Recorder};
 use crate::pack;
 use crate::recording::Operand;
-use ctsn_core::cpu::repair::{bury, closest, collide, eight, settle, spread};
-use ctsn_core::operation::{Bury, Collide, Settle, Spread};
+use ctsn_core::cpu::repair::{bury, closest, collide, eight, settle, slide, spread};
+use ctsn_core::operation::{Bury, Collide, Settle, Slide, Spread};
 use ctsn_shaders as shaders;
 
 impl Record for Bury<Id, Id> {
@@ -52,6 +52,30 @@ impl Record for Spread<Id, Id, IndexId> {
         ];
         let params = shaders::Spread { vertices: n as u32, follow: spread::FOLLOW };
         recorder.dispatch(&shaders::SPREAD, params, &operands, [n, 1], after);
+    }
+}
+
+impl Record for Slide<Id, Id, IndexId> {
+    fn record(self, recorder: &mut Recorder) {
+        let Self { offsets, neighbours, squares, share, positions, push, before, after } = self;
+        let n = recorder.length(push) / 3;
+        let operands = [
+            recorder.indexed(offsets),
+            recorder.indexed(neighbours),
+            recorder.pack(("squares", squares.0), |it| it.values(squares).to_vec()),
+            recorder.rows(share, 1, 4),
+            recorder.rows(positions, 3, 3),
+            recorder.rows(push, 3, 3),
+            recorder.rows(before, 3, 3),
+            recorder.rows(after, 3, 3),
+        ];
+        recorder.dispatch(
+            &shaders::SLIDE,
+            shaders::Slide { vertices: n as u32, rate: slide::RATE },
+            &operands,
+            [n, 1],
+            after,
+        );
     }
 }
 

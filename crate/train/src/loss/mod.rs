@@ -17,7 +17,7 @@ use ctsn_core::model::HostModel;
 use ctsn_core::pose::BodyFrame;
 
 /// Every loss of a training on simulated poses.
-pub const LOSSES: &[Term] = &[coarse::COARSE, fine::FINE, penetration::PENETRATION];
+pub const LOSSES: &[Term] = &[coarse::COARSE, fine::FINE, penetration::PENETRATION, energy::TENSION];
 
 /// Every loss of a training without truth: the sum is what a simulation minimises.
 pub const SELF_SUPERVISED: &[Term] = &[energy::ENERGY, contact::CONTACT];

@@ -1,5 +1,6 @@
 //! A forward pass as training records it: operations, activations, and the predictions that learn.
 
+use super::gradient::polishing::Recorded;
 use super::tape::{Id, Lane, Shared, Tape};
 use super::{Variant, upload};
 use crate::Result;
@@ -7,6 +8,7 @@ use crate::loss::Prediction;
 use ctsn_core::model::HostModel;
 use ctsn_core::network::{Activations, Streams, forward, skin};
 use ctsn_core::operation::Space;
+use ctsn_core::topology::Graph;
 
 /// The recorded pass. All recordings of one model number its arrays alike.
 pub(crate) struct Recording {
@@ -35,6 +37,12 @@ impl Recording {
             skin(&mut tape, rest, &recorded.skinning, transforms, Space::Body, &mut coarse);
             coarse
         });
+        if let (Some(cut), Streams::Both) = (&recorded.cut, streams) {
+            let Graph { offsets, neighbours } = recorded.graph;
+            let at = Recorded { offsets, neighbours, squares: cut.squares };
+            activations.positions =
+                tape.polish(at, &activations.positions, 3 * model.sizes.vertices, cut.steps.next_multiple_of(2));
+        }
         (Self { tape, activations, coarse }, shared, learning)
     }
 

@@ -1,7 +1,7 @@
 //! The tape: a device that keeps the operations of one forward pass, to run them and their gradients on the CPU.
 //! Recorded once per model and shared by all lanes: a [`Lane`] holds the values and gradients of one sample.
 
-use super::gradient::{self, Flow};
+use super::gradient::{self, Flow, polishing};
 use crate::{Error, Result};
 use ctsn_core::cpu::{Cpu, Level};
 use ctsn_core::device::Device;
@@ -23,6 +23,13 @@ pub(super) enum Step {
         rest: Id,
         residual: Id,
         total: Id,
+    },
+    /// The steps of the polish at once, for each of them starts from the two before.
+    Polish {
+        cut: polishing::Recorded,
+        from: Id,
+        trail: Id,
+        polished: Id,
     },
 }
 
@@ -174,6 +181,10 @@ impl Tape {
                     let terms = read(*rest).iter().zip(read(*residual));
                     lent[0].iter_mut().zip(terms).for_each(|(total, (rest, by))| *total = rest + by);
                 }
+                Step::Polish { cut, from, .. } => {
+                    let [trail, polished] = &mut lent[..] else { unreachable!("two are written") };
+                    polishing::forward(cpu, &cut.of(self, shared), read(*from), trail, polished);
+                }
             }
             writes.iter().zip(lent).for_each(|(id, value)| lane.values[id.0] = value);
         }
@@ -202,7 +213,7 @@ impl Tape {
 
     /// Keeps a step, and finds the way of its gradient: to every operand that learns, or it is unknown what lies behind
     /// it.
-    fn keep(&mut self, name: &'static str, step: Step, reads: Vec<Id>, writes: Vec<Id>) {
+    pub(super) fn keep(&mut self, name: &'static str, step: Step, reads: Vec<Id>, writes: Vec<Id>) {
         // What is written may be read first, too.
         let before: Vec<Id> = reads.iter().chain(&writes).copied().filter(|id| self.learns(*id)).collect();
         let flow = gradient::flow(&step);

@@ -6,8 +6,9 @@ use super::rings::{RING, Rings};
 use fearless_simd::{Select, Simd, SimdBase, f32x8, u32x8};
 use glam::Vec3;
 
-/// Distance at which cloth is kept from the body, metres.
-pub const GAP: f32 = 0.003;
+/// Distance at which cloth is kept from the body, metres. (With 3 mm, which simulated cloth keeps less often, a
+/// repaired T-shirt was strained by 1.31 % in place of 1.25, and had 1.64 times the simulation's energy, not 1.45.)
+pub const GAP: f32 = 0.002;
 /// Cloth deeper inside than this is left where it is, metres: so deep, the nearest surface does not tell where the
 /// cloth belongs. (With half of it, single vertices stayed inside an obstacle where the prediction was worst.)
 pub const DEPTH: f32 = 0.12;

@@ -6,6 +6,7 @@ pub mod attend;
 pub mod blend;
 pub mod gate;
 pub mod linear;
+pub mod polishing;
 pub mod skin;
 
 use super::tape::{Id, IndexId, Lane, Shared, Step, Tape};
@@ -41,6 +42,7 @@ pub(super) fn flow(step: &Step) -> Option<Flow> {
     let operation = match step {
         Step::Operation(operation) => operation,
         Step::Add { residual, total, .. } => return Some(Flow::new(*total, [*residual])),
+        Step::Polish { from, polished, .. } => return Some(Flow::new(*polished, [*from])),
     };
     match operation {
         Operation::Linear(it) => Some(Flow::new(it.y, [it.x, it.weight, it.bias])),
@@ -61,6 +63,11 @@ pub(super) fn backward(tape: &Tape, step: &Step, shared: &Shared, lane: &mut Lan
         Step::Operation(operation) => operation,
         Step::Add { residual, total, .. } => {
             return lane.add_to(*total, [*residual], |_, g, [dresidual]| dresidual.copy_from_slice(g));
+        }
+        Step::Polish { cut, from, trail, polished } => {
+            return lane.add_to(*polished, [*from], |lane, g, [dfrom]| {
+                polishing::backward(&cut.of(tape, shared), lane.value(shared, *trail), g, dfrom);
+            });
         }
     };
     match operation {

@@ -1,0 +1,129 @@
+//! The polish, all its steps at once: `x_(k+1) = x_k + w mean_j h(x_j - x_i) + μ_k (x_k - x_(k-1))`, μ_0 = 0, where
+//! `h(d) = d (½ - l̄² / (d² + l̄²))` has the derivative `H = (½ - l̄² q) 1 + 2 l̄² q² d dᵀ`, `q = 1 / (d² + l̄²)`.
+//! Backwards, with λ_k the gradient towards x_k:
+//! `λ_k = (1 + μ_k) λ_(k+1) - μ_(k+1) λ_(k+2) + Jᵀ λ_(k+1)`, `(Jᵀ λ)_i = Σ_j H_ij (c_j λ_j - c_i λ_i)`, c = w / degree.
+
+use super::super::tape::{Id, IndexId, Shared, Step, Tape};
+use ctsn_core::cpu::Cpu;
+use ctsn_core::cpu::network::polish::{MOMENTUM, RATE};
+use ctsn_core::operation::{Operation, Polish};
+use ctsn_core::topology::Graph;
+use glam::Vec3;
+
+/// How the garment was cut.
+#[derive(Clone, Copy)]
+pub struct Cut<'a> {
+    /// Its edges.
+    pub graph: Graph<&'a [u32]>,
+    /// Their squared lengths, in the order of the neighbours.
+    pub squares: &'a [f32],
+}
+
+/// The same on the tape.
+#[derive(Clone, Copy)]
+pub struct Recorded {
+    /// Where the neighbours of each vertex start.
+    pub offsets: IndexId,
+    /// Neighbours.
+    pub neighbours: IndexId,
+    /// Squared lengths of the edges to them.
+    pub squares: Id,
+}
+
+impl Recorded {
+    pub(in crate::training) fn of<'a>(&self, tape: &'a Tape, shared: &'a Shared) -> Cut<'a> {
+        let [offsets, neighbours] = [self.offsets, self.neighbours].map(|id| tape.indices_of(id));
+        Cut { graph: Graph { offsets, neighbours }, squares: shared.get(self.squares) }
+    }
+}
+
+impl Tape {
+    /// from [n, 3], of so many numbers -> polished [n, 3].
+    pub fn polish(&mut self, cut: Recorded, from: &Id, length: usize, steps: usize) -> Id {
+        let [trail, polished] = [steps * length, length].map(|length| self.buffer(&vec![0.0; length]));
+        self.keep("polish", Step::Polish { cut, from: *from, trail, polished }, vec![*from], vec![trail, polished]);
+        polished
+    }
+}
+
+/// from [n, 3] -> what each step starts from, [steps, n, 3], and the last one's result [n, 3].
+pub fn forward(cpu: &mut Cpu, cut: &Cut, from: &[f32], trail: &mut [f32], polished: &mut [f32]) {
+    let length = from.len();
+    let Cut { graph: Graph { offsets, neighbours }, squares } = *cut;
+    trail[..length].copy_from_slice(from);
+    for k in 0..trail.len() / length {
+        let (done, ahead) = trail.split_at_mut((k + 1) * length);
+        let other = ahead.get_mut(..length).unwrap_or(polished);
+        // Momentum is found where the result goes.
+        if let Some(before) = k.checked_sub(1) {
+            other.copy_from_slice(&done[before * length..][..length]);
+        }
+        let current = &done[k * length..];
+        let step = Polish { offsets, neighbours, squares, share: &[1.0][..], first: k == 0, current, other };
+        cpu.compute(Operation::Polish(step));
+    }
+}
+
+/// g [n, 3] towards the result -> dfrom (overwritten).
+pub fn backward(cut: &Cut, trail: &[f32], g: &[f32], dfrom: &mut [f32]) {
+    let g = g.as_chunks::<3>().0;
+    let mut after: Vec<Vec3> = vec![Vec3::ZERO; g.len()];
+    let mut current: Vec<Vec3> = g.iter().map(|g| Vec3::from_array(*g)).collect();
+    let mut mean = after.clone();
+    let mut momentum = 0.0;
+    for (k, x) in trail.chunks_exact(3 * g.len()).enumerate().rev() {
+        let x = x.as_chunks::<3>().0;
+        let shares = current.iter().zip(cut.graph.offsets.windows(2));
+        mean.iter_mut().zip(shares).for_each(|(mean, (by, row))| *mean = by * (RATE / (row[1] - row[0]).max(1) as f32));
+        let here = if k > 0 { MOMENTUM } else { 0.0 };
+        let mut squares = cut.squares.iter();
+        for (i, after) in after.iter_mut().enumerate() {
+            let at = Vec3::from_array(x[i]);
+            let mut sum = current[i] * (1.0 + here) - *after * momentum;
+            for (j, square) in cut.graph.of(i).iter().zip(&mut squares) {
+                let along = Vec3::from_array(x[*j as usize]) - at;
+                let by = mean[*j as usize] - mean[i];
+                let q = 1.0 / (along.length_squared() + square);
+                sum += by * (0.5 - square * q) + along * (2.0 * square * q * q * along.dot(by));
+            }
+            *after = sum;
+        }
+        std::mem::swap(&mut after, &mut current);
+        momentum = here;
+    }
+    dfrom.as_chunks_mut::<3>().0.iter_mut().zip(current).for_each(|(d, by)| *d = by.to_array());
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ctsn_core::topology::Graph;
+
+    #[test]
+    fn its_gradient_is_that_of_central_differences() {
+        let mut rng = fastrand::Rng::with_seed(3);
+        // A strip of 12 triangles.
+        let triangles: Vec<u32> = (0..12).flat_map(|i| [i, i + 1 + i % 2, i + 2 - i % 2]).collect();
+        let Graph { offsets, neighbours } = Graph::new(14, &triangles);
+        let squares: Vec<f32> = (0..14)
+            .flat_map(|i| neighbours[offsets[i] as usize..offsets[i + 1] as usize].iter().map(move |j| i + *j as usize))
+            .map(|sum| 0.5 + 0.01 * sum as f32)
+            .collect();
+        let cut = Cut { graph: Graph { offsets: &offsets, neighbours: &neighbours }, squares: &squares };
+        let [from, g, noise] = [0; 3].map(|_| (0..42).map(|_| rng.f32() * 2.0 - 1.0).collect::<Vec<f32>>());
+        let (mut trail, mut polished, mut gradient) = (vec![0.0; 6 * 42], vec![0.0; 42], vec![f32::NAN; 42]);
+        forward(&mut Cpu::new(), &cut, &from, &mut trail, &mut polished);
+        backward(&cut, &trail, &g, &mut gradient);
+        let product = |a: &[f32], b: &[f32]| a.iter().zip(b).map(|(a, b)| f64::from(a * b)).sum::<f64>();
+        let length = product(&gradient, &gradient).sqrt() as f32;
+        let direction: Vec<f32> = gradient.iter().zip(&noise).map(|(g, noise)| g / length + 0.1 * noise).collect();
+        let mut at = |step: f32| {
+            let moved: Vec<f32> = from.iter().zip(&direction).map(|(x, d)| x + step * d).collect();
+            forward(&mut Cpu::new(), &cut, &moved, &mut trail, &mut polished);
+            product(&polished, &g)
+        };
+        let difference = (at(2e-3) - at(-2e-3)) / 4e-3;
+        let analytic = product(&gradient, &direction);
+        assert!((difference - analytic).abs() < 5e-3 * analytic.abs(), "{difference} against {analytic}");
+    }
+}
