@@ -1,5 +1,6 @@
 import { Box3, BufferAttribute, BufferGeometry, DynamicDrawUsage, Sphere } from 'three';
-import type { ClothModel, Frame } from '../model.js';
+import type { Frame } from '../frame.js';
+import type { ClothModel } from '../model.js';
 import { boundPositions } from './bounds.js';
 
 /** The drawn surface of a model. Its positions, normals and bounds are empty until `showPrediction` fills them. */
