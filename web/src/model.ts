@@ -2,6 +2,7 @@ import { Switch, type Backend, type BackendChoice, type Measured, type Opener } 
 import type { ClothBuffers } from './buffers.js';
 import { CtsnError } from './error.js';
 import type { Frame, PredictOptions, Surface } from './frame.js';
+import type { ModelInfo } from './info.js';
 import { fromCore } from './module.js';
 import { PoseWriter, restPose, type Pose } from './pose.js';
 import { Fade } from './quality.js';
@@ -42,6 +43,7 @@ export class ClothModel extends EventTarget {
   readonly #switch: Switch;
   readonly #writer: PoseWriter;
   #pose = new Float32Array();
+  #info: ModelInfo | undefined;
 
   /** @internal */
   constructor(predictor: Predictor, { memory, threads }: Engine, openSide: Opener) {
@@ -62,6 +64,11 @@ export class ClothModel extends EventTarget {
     this.triangles = predictor.triangles();
     this.surface = readSurface(predictor);
     this.threads = threads;
+  }
+
+  /** Sizes, bytes, and what it was trained on and how well. */
+  get info(): ModelInfo {
+    return (this.#info ??= this.#alive().info() as ModelInfo);
   }
 
   /** True after `dispose()`. */
