@@ -5,11 +5,9 @@ import type { Frame, PredictOptions, Surface } from './frame.js';
 import type { ModelInfo } from './info.js';
 import { fromCore } from './module.js';
 import { PoseWriter, restPose, type Pose } from './pose.js';
-import { Fade } from './quality.js';
+import { fadeOf, type Fade } from './quality.js';
 import type { Engine, Predictor } from './raw.js';
 import type { GPUDevice } from './webgpu.js';
-
-const qualities = { full: new Fade('full'), coarse: new Fade('coarse'), skinned: new Fade('skinned') };
 
 /**
  * A garment's network, made by `loadModel`. Dispatches an event `backend` when it begins to compute elsewhere: on a
@@ -137,11 +135,7 @@ export class ClothModel extends EventTarget {
   predictCloth(pose: Pose, options: PredictOptions & { output: 'gpu' }): Frame | ClothBuffers;
   predictCloth(pose: Pose, options?: PredictOptions & { output?: 'arrays' | undefined }): Frame | Promise<Frame>;
   predictCloth(pose: Pose, options?: PredictOptions): Frame | ClothBuffers | Promise<Frame> {
-    const fade = options?.fade ?? qualities[options?.quality ?? 'full'];
-    if (fade === undefined) {
-      const found = String(options?.quality);
-      throw new CtsnError('argument', `quality: "full", "coarse" or "skinned" wanted, "${found}" found`);
-    }
+    const fade = fadeOf(options);
     this.#alive();
     this.#writer.write(pose, this.#pose);
     const buffers = options?.backend === 'cpu' ? undefined : this.#buffers(options?.buffers);

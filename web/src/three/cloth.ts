@@ -6,11 +6,13 @@ import type { ClothModel } from '../model.js';
 import { Fade, type Quality } from '../quality.js';
 import { refreshAbove, type Character } from './bones.js';
 import { boundPose, reachOf } from './bounds.js';
-import { Dressing } from './dressing.js';
-import { checked, type ClothOptions } from './options.js';
+import { Dressing, Twin } from './dressing.js';
+import { checked, type AnyClothModel, type ClothOptions } from './options.js';
 import { createGeometry, showPrediction } from './surface.js';
 import { ZeroCopy } from './zero-copy.js';
 
+/** How far cloth may be from the joints, metres, as long as none was seen. */
+const REACH = 1;
 /**
  * Predictions on their way back from the GPU, at most. With one, every second animation frame would show nothing new.
  */
@@ -52,14 +54,14 @@ export class Cloth<M extends Material | Material[] = Material> extends Mesh<Buff
   #confidence = 1;
   /** What was refused between two updates. */
   #failure: unknown;
-  /** Distance of the cloth from the joints, metres; measured when bounds of unknown positions are wanted. */
+  /** Distance of the cloth from the joints, metres; measured on the first prediction, for bounds of unknown ones. */
   #reach: number | undefined;
 
   /**
    * Dresses `character`, which may be a skeleton, a skinned mesh, or the object above several. Throws a `CtsnError`
    * where an argument is of the wrong kind, a joint has no bone, or the character is not the one of the model.
    */
-  constructor(model: ClothModel, character: Character, material: M, options: ClothOptions = {}) {
+  constructor(model: AnyClothModel, character: Character, material: M, options: ClothOptions = {}) {
     super(createGeometry(checked(model, character, material, options)), material);
     this.#dressing = options instanceof Twin ? options.dressing : Dressing.of(model, character, options);
     this.#renderer = options.renderer;
@@ -70,7 +72,7 @@ export class Cloth<M extends Material | Material[] = Material> extends Mesh<Buff
   }
 
   /** The network that moves this cloth. */
-  get model(): ClothModel {
+  get model(): AnyClothModel {
     return this.#dressing.model;
   }
 
@@ -84,7 +86,7 @@ export class Cloth<M extends Material | Material[] = Material> extends Mesh<Buff
    * place in the scene stay. The model before is not disposed of. What throws in the constructor throws here, and the
    * cloth stays as it was.
    */
-  setModel(model: ClothModel, { fit }: Pick<ClothOptions, 'fit'> = {}): this {
+  setModel(model: AnyClothModel, { fit }: Pick<ClothOptions, 'fit'> = {}): this {
     const dressing = this.#dressing.with(checked(model, this, this.material, {}), fit);
     const geometry = createGeometry(model);
     this.#leave();
@@ -167,10 +169,13 @@ export class Cloth<M extends Material | Material[] = Material> extends Mesh<Buff
     return this;
   }
 
-  /** The first prediction is there at once, wherever later ones are computed. What is on its way is void. */
+  /**
+   * The first prediction is there at once, wherever later ones are computed, unless that is a worker. What is on its
+   * way is void.
+   */
   #begin(): void {
     this.#shown = ++this.#asked;
-    if (this.#read()) this.#show(this.model.predictCloth(this.#dressing.pose, this.#atOnce));
+    if (this.#read()) this.#receive(this.model.predictCloth(this.#dressing.pose, this.#atOnce));
     this.#place();
   }
 
@@ -198,20 +203,22 @@ export class Cloth<M extends Material | Material[] = Material> extends Mesh<Buff
     const buffers = this.#zeroCopy.ready();
     if (buffers) return this.#draw(buffers);
     // Until there are buffers to draw from, the CPU predicts: it is never late.
-    if (this.#zeroCopy.shares()) {
-      return this.#show(this.model.predictCloth(this.#dressing.pose, this.#atOnce));
-    }
+    if (this.#zeroCopy.shares()) return this.#receive(this.model.predictCloth(this.#dressing.pose, this.#atOnce));
     if (this.#inFlight >= IN_FLIGHT) {
       this.#skipped = true;
       return;
     }
-    const answer = this.model.predictCloth(this.#dressing.pose, this.#options);
+    this.#receive(this.model.predictCloth(this.#dressing.pose, this.#options));
+  }
+
+  #receive(answer: Frame | Promise<Frame>): void {
     if ('output' in answer) this.#show(answer);
     else this.#await(answer);
   }
 
   #draw(buffers: ClothBuffers): void {
-    const { model } = this;
+    // Only models of this page have buffers.
+    const model = this.model as ClothModel;
     const answer = model.predictCloth(this.#dressing.pose, { ...this.#options, output: 'gpu', buffers });
     if (answer.output === 'gpu') {
       this.#shown = ++this.#asked;
@@ -226,8 +233,7 @@ export class Cloth<M extends Material | Material[] = Material> extends Mesh<Buff
   }
 
   #bound(): void {
-    this.#reach ??= reachOf(this.model.predictCloth(this.#dressing.pose, { backend: 'cpu' }).positions, this.#dressing.pose);
-    boundPose(this.#dressing.pose, this.#reach, this.geometry);
+    boundPose(this.#dressing.pose, this.#reach ?? REACH, this.geometry);
   }
 
   /** Shows a late answer when it comes, unless a later one is shown, and then predicts what was skipped meanwhile. */
@@ -256,6 +262,8 @@ export class Cloth<M extends Material | Material[] = Material> extends Mesh<Buff
     this.#shown = turn;
     this.#confidence = frame.confidence;
     showPrediction(this.geometry, frame, this.model.surface?.vertex);
+    this.#reach ??= reachOf(frame.positions, this.#dressing.pose);
+    if ('recycle' in this.model) this.model.recycle(frame);
   }
 
   /** Makes `matrixWorld` the placement, whatever stands above this object. */
@@ -290,12 +298,4 @@ export class Cloth<M extends Material | Material[] = Material> extends Mesh<Buff
     // Object3D has a dispose() of its own since three r187.
     super.dispose?.();
   }
-}
-
-/** What a clone is made of: whether the character fits was decided when the first was made. */
-class Twin implements ClothOptions {
-  constructor(
-    readonly renderer: object | undefined,
-    readonly dressing: Dressing,
-  ) {}
 }

@@ -1,14 +1,13 @@
 import { Matrix4, type Object3D } from 'three';
-import type { ClothModel } from '../model.js';
 import { ask, findBones, refresh, topmost, type BoneMap, type Character } from './bones.js';
 import { follow, trace } from './clone.js';
 import { checkFit } from './fit.js';
-import type { ClothOptions } from './options.js';
+import type { AnyClothModel, ClothOptions } from './options.js';
 import { splitPlacement } from './placement.js';
 
 /** A model on a character: which bones are its joints, and how they stand. */
 export class Dressing {
-  readonly model: ClothModel;
+  readonly model: AnyClothModel;
   /** The pose last read, as the network wants it [16·J]. */
   readonly pose: Float32Array;
   /** Carries the network's answer back into the scene. */
@@ -23,7 +22,7 @@ export class Dressing {
   #origin: number[][] | undefined;
 
   private constructor(
-    model: ClothModel,
+    model: AnyClothModel,
     character: Character,
     bones: readonly Object3D[],
     map: BoneMap | undefined,
@@ -40,14 +39,14 @@ export class Dressing {
   }
 
   /** Finds the bones, and refuses a character for which the model is not made. */
-  static of(model: ClothModel, character: Character, { bones: map, fit = 'refuse' }: ClothOptions): Dressing {
+  static of(model: AnyClothModel, character: Character, { bones: map, fit = 'refuse' }: ClothOptions): Dressing {
     const bones = findBones(character, model.joints, map);
     checkFit(model, character, bones, fit);
     return new Dressing(model, character, bones, map);
   }
 
   /** Another model on the same character. What is known of its bones stays. */
-  with(model: ClothModel, fit: ClothOptions['fit']): Dressing {
+  with(model: AnyClothModel, fit: ClothOptions['fit']): Dressing {
     const known = new Map(this.model.joints.map((joint, i) => [joint, this.#bones[i]]));
     const bones = (joint: string) => known.get(joint) ?? ask(this.#map, joint);
     return Dressing.of(model, this.#character, { bones, fit });
@@ -79,4 +78,12 @@ export class Dressing {
     this.#bones = found.bones;
     this.#tops = topmost(found.bones);
   }
+}
+
+/** What a clone is made of: whether the character fits was decided when the first was made. */
+export class Twin implements ClothOptions {
+  constructor(
+    readonly renderer: object | undefined,
+    readonly dressing: Dressing,
+  ) {}
 }

@@ -1,7 +1,7 @@
 import { Matrix4, Vector3, type Object3D, type Skeleton } from 'three';
 import { CtsnError } from '../error.js';
-import type { ClothModel } from '../model.js';
 import { skeletonsOf, type Character } from './bones.js';
+import type { AnyClothModel } from './options.js';
 
 /** A joint may be off by so much of the skeleton's size: what a rig loses on its way through another tool is less. */
 const FAR = 0.02;
@@ -27,7 +27,7 @@ interface Misfit {
  * elsewhere, or is turned, tears the cloth in every pose. A character without skinned meshes has no bind pose and
  * passes.
  */
-export function checkFit(model: ClothModel, character: Character, bones: readonly Object3D[], fit: Fit): void {
+export function checkFit(model: AnyClothModel, character: Character, bones: readonly Object3D[], fit: Fit): void {
   const best = new Map<string, Misfit>();
   // Several skins of one file may bind the same joint in spaces of their own.
   for (const skeleton of skeletonsOf(character)) {
@@ -62,7 +62,7 @@ interface Pair {
   between: Matrix4;
 }
 
-function compare(model: ClothModel, { bones: bound, boneInverses }: Skeleton, bones: readonly Object3D[]): Misfit[] {
+function compare(model: AnyClothModel, { bones: bound, boneInverses }: Skeleton, bones: readonly Object3D[]): Misfit[] {
   const pairs = bones.flatMap((bone, index): Pair[] => {
     const inverse = boneInverses[(bound as Object3D[]).indexOf(bone)];
     if (!inverse || inverse.determinant() === 0) return [];

@@ -4,4 +4,4 @@ export { deviceOf } from './renderer.js';
 export { ClothLoader } from './loader.js';
 export type { BoneMap, Character } from './bones.js';
 export type { Fit } from './fit.js';
-export type { ClothOptions } from './options.js';
+export type { AnyClothModel, ClothOptions } from './options.js';

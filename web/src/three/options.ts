@@ -1,7 +1,11 @@
 import { CtsnError } from '../error.js';
-import { ClothModel } from '../model.js';
+import type { ClothModel } from '../model.js';
+import type { WorkerClothModel } from '../worker/model.js';
 import type { BoneMap } from './bones.js';
 import type { Fit } from './fit.js';
+
+/** What moves a cloth: a model of this page's, or one in a worker, whose answers show a frame or two late. */
+export type AnyClothModel = ClothModel | WorkerClothModel;
 
 /** How to dress a character. */
 export interface ClothOptions {
@@ -17,17 +21,18 @@ export interface ClothOptions {
 }
 
 /** The model, if it and what else a cloth is made of are of the right kind. */
-export function checked(model: unknown, character: unknown, material: unknown, options: unknown): ClothModel {
+export function checked(model: unknown, character: unknown, material: unknown, options: unknown): AnyClothModel {
   const refuse = (what: string, wanted: string, found: unknown) => {
     const name = found instanceof Object ? found.constructor.name : String(found);
     return new CtsnError('argument', `new Cloth(model, character, material, options): ${what} wants ${wanted}, found ${name}`);
   };
   const is = (found: unknown, mark: string) => found instanceof Object && mark in found;
-  if (!(model instanceof ClothModel)) throw refuse('model', 'what loadModel answers', model);
+  // Not by class: a page may have the package twice.
+  if (!is(model, 'predictCloth')) throw refuse('model', 'what loadModel answers', model);
   if (!is(character, 'isObject3D') && !is(character, 'boneInverses')) {
     throw refuse('character', "an Object3D, such as GLTFLoader's gltf.scene, or a Skeleton", character);
   }
   if (!is(Array.isArray(material) ? material[0] : material, 'isMaterial')) throw refuse('material', 'a Material', material);
   if (!(options instanceof Object) || is(options, 'render')) throw refuse('options', '{ renderer, bones, fit }', options);
-  return model;
+  return model as AnyClothModel;
 }
