@@ -11,7 +11,11 @@ export async function look(browser, address) {
   const page = await browser.newPage({ viewport: { width: 640, height: 480 } });
   const [problems, warnings] = [[], []];
   page.on('pageerror', (error) => problems.push(`exception: ${error.message}`));
-  page.on('requestfailed', (request) => problems.push(`${request.url()}: ${request.failure()?.errorText}`));
+  page.on('requestfailed', (request) => {
+    const { errorText } = request.failure();
+    // A development server that discovers packages late loads the page again.
+    if (errorText !== 'net::ERR_ABORTED') problems.push(`${request.url()}: ${errorText}`);
+  });
   page.on('console', (message) => {
     const { url } = message.location();
     if (message.type() === 'warning') warnings.push(message.text());
@@ -39,7 +43,7 @@ async function watch(page, problems) {
   let [first, found] = [undefined, 'no garment'];
   for (const end = Date.now() + 1000 * patience; Date.now() < end && problems.length === 0; ) {
     await page.waitForTimeout(300);
-    const positions = await page.evaluate(garment);
+    const positions = await page.evaluate(garment).catch(() => []);
     if (positions.length === 0) continue;
     if (!positions.every(Number.isFinite)) return ['a vertex is not finite'];
     first ??= positions;
