@@ -11,7 +11,7 @@ export const environments = {
   vite: { dev: true, build: 'dist' },
   'vite-7': { folder: 'examples/vite', packages: ['vite@7.3.8'], dev: true, build: 'dist' },
   'vite-6': { folder: 'examples/vite', packages: ['vite@6.4.6'], dev: true, build: 'dist' },
-  'vite-5': { folder: 'examples/vite', packages: ['vite@5.4.9'], dev: true, build: 'dist' },
+  'vite-5': { folder: 'examples/vite', packages: ['vite@5.4.21'], dev: true, build: 'dist' },
   webpack: { build: 'public' },
   esbuild: { build: 'public' },
   'esbuild-plain': { folder: 'examples/esbuild', files: { 'main.js': 'examples/vite/main.js' }, build: 'public' },
