@@ -28,6 +28,8 @@ export default defineConfig({
       },
       // The exported network, in another runtime on Node.
       { extends: true, test: { name: 'onnx', include: ['tests/onnx/*.test.ts'] } },
+      // The package in three browsers, which differ by more than their names.
+      { extends: true, test: { name: 'engines', include: ['tests/engines/*.test.ts'] } },
       // The demo site in headless Chromium, and the module as it is shipped.
       { extends: true, test: { name: 'browser', include: ['tests/browser/*.test.ts'] } },
     ],

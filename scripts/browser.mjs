@@ -1,9 +1,18 @@
-// Chromium and its driver: where they are, and the flags under which they draw WebGL and WebGPU without a screen.
+// The browsers and their drivers: where they are, and the flags under which Chromium draws WebGL and WebGPU without a
+// screen.
 import { existsSync, readFileSync, realpathSync } from 'node:fs';
 import path from 'node:path';
 import { at, Stop } from './step.mjs';
 
-const names = { CHROMIUM: ['chromium', 'chromium-browser', 'google-chrome', 'google-chrome-stable'], CHROMEDRIVER: ['chromedriver'] };
+const names = {
+  CHROMIUM: ['chromium', 'chromium-browser', 'google-chrome', 'google-chrome-stable'],
+  CHROMEDRIVER: ['chromedriver'],
+  FIREFOX: ['firefox-esr', 'firefox'],
+  WEBKITDRIVER: ['WebKitWebDriver'],
+  XVFB: ['Xvfb'],
+};
+/** Debian's packages of all of them. */
+const packages = 'chromium chromium-driver firefox-esr webkit2gtk-driver xvfb';
 const folders = [...(process.env.PATH ?? '').split(path.delimiter), '/Applications/Google Chrome.app/Contents/MacOS', '/Applications/Chromium.app/Contents/MacOS'];
 
 /** Path of the program: the environment variable of that name, else the first found. A missing one stops the script. */
@@ -12,7 +21,7 @@ function find(variable) {
   const candidates = set ? [set] : names[variable].flatMap((name) => folders.map((folder) => path.join(folder, name)));
   const found = candidates.find((file) => existsSync(file));
   if (found) return found;
-  throw new Stop(`${names[variable][0]} is missing, and the browser tests cannot run without it. Install it (Debian: apt-get install chromium chromium-driver) or set ${variable} to its path.`);
+  throw new Stop(`${names[variable][0]} is missing, and the browser tests cannot run without it. Install it (Debian: apt-get install ${packages}) or set ${variable} to its path.`);
 }
 
 /** Path of Chromium. */
@@ -20,6 +29,15 @@ export const chromium = () => find('CHROMIUM');
 
 /** Path of chromedriver. */
 export const chromedriver = () => find('CHROMEDRIVER');
+
+/** Path of Firefox. */
+export const firefox = () => find('FIREFOX');
+
+/** Path of the driver of WebKitGTK's MiniBrowser. */
+export const webkitDriver = () => find('WEBKITDRIVER');
+
+/** Path of the X server without a screen. */
+export const xvfb = () => find('XVFB');
 
 /** The command line flags, from the file that wasm-bindgen's test runner reads too. */
 export function flags() {

@@ -97,11 +97,22 @@ async function bind({ package: crate, glue: bound, name, features: { folder, opt
 }
 
 /**
+ * The module for any browser as JavaScript: where a bundler moves the package's scripts away from its other files, they
+ * find this one, because bundlers follow every `import()`.
+ */
+function inline() {
+  const base64 = readFileSync(`${glue}/ctsn_bg.wasm`, 'base64');
+  writeFileSync(`${glue}/inline.js`, `export const bytes = Uint8Array.from(atob('${base64}'), (letter) => letter.charCodeAt(0));\n`);
+  writeFileSync(`${glue}/inline.d.ts`, '/** ctsn_bg.wasm. */\nexport const bytes: Uint8Array<ArrayBuffer>;\n');
+}
+
+/**
  * Compiles web/src to web/dist; the glue is JavaScript already and is copied. Without `threads` their module is left as
  * it is, be it missing: it takes a minute, and the demo has none.
  */
 export async function buildLibrary({ threads = true } = {}) {
   await buildWasm(threads);
+  inline();
   say('compiling the npm package');
   await need('tsc', ['-p', at('web', 'tsconfig.json'), ...(threads ? [] : ['--noCheck'])]);
   cpSync(glue, at('web', 'dist', 'glue'), { recursive: true, preserveTimestamps: true });

@@ -1,3 +1,7 @@
+export function serve(
+  folders: Record<string, string>,
+  headers?: Record<string, string>,
+): Promise<{ origin: string; close: () => void }>;
 export function withServer<Answer>(
   folders: Record<string, string>,
   body: (origin: string) => Promise<Answer>,

@@ -13,10 +13,10 @@ const isolated = {
 };
 
 /**
- * Runs `body(origin)` while `folders`, { '/prefix/': folder }, are served there, with those headers; every other
- * address is an empty page.
+ * Serves `folders`, { '/prefix/': folder }, with those headers: { origin, close }. Every other address is an empty
+ * page.
  */
-export async function withServer(folders, body, headers = isolated) {
+export async function serve(folders, headers = isolated) {
   const server = createServer((request, response) => {
     const { pathname } = new URL(request.url, 'http://localhost');
     const prefix = Object.keys(folders).find((prefix) => pathname.startsWith(prefix));
@@ -29,11 +29,20 @@ export async function withServer(folders, body, headers = isolated) {
   });
   server.listen(0, 'localhost');
   await once(server, 'listening');
-  try {
-    return await body(`http://localhost:${server.address().port}`);
-  } finally {
+  const close = () => {
     server.closeAllConnections();
     server.close();
+  };
+  return { origin: `http://localhost:${server.address().port}`, close };
+}
+
+/** Runs `body(origin)` while folders are served. */
+export async function withServer(folders, body, headers) {
+  const { origin, close } = await serve(folders, headers);
+  try {
+    return await body(origin);
+  } finally {
+    close();
   }
 }
 

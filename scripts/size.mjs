@@ -7,7 +7,7 @@ import { at, main } from './step.mjs';
 
 /**
  * Minified JavaScript of an entry of the npm package, three.js left out: what is loaded with it, what only a GPU asks
- * for, and what only threads do, their worker's included.
+ * for, what only threads do, their worker's included, and the module for pages whose bundler lost its file.
  */
 async function bundle(entry) {
   const { build } = await import('vite');
@@ -23,14 +23,11 @@ async function bundle(entry) {
     },
   });
   const scripts = output.filter(({ fileName }) => fileName.endsWith('.js'));
-  const lazy = { gpu: /gpu-side/, threads: /thread/ };
+  const lazy = { gpu: /gpu-side/, threads: /thread/, inline: /inline/ };
   const all = Object.values(lazy);
   const code = (wanted) => Buffer.from(scripts.filter(({ fileName }) => wanted(path.basename(fileName))).map(({ code, source }) => code ?? source).join('\n'));
-  return {
-    javascript: code((name) => !all.some((pattern) => pattern.test(name))),
-    gpu: code((name) => lazy.gpu.test(name)),
-    threads: code((name) => lazy.threads.test(name)),
-  };
+  const parts = Object.entries(lazy).map(([part, pattern]) => [part, code((name) => pattern.test(name))]);
+  return { javascript: code((name) => !all.some((pattern) => pattern.test(name))), ...Object.fromEntries(parts) };
 }
 
 const weigh = (bytes) => ({ raw: bytes.length, brotli: brotliCompressSync(bytes).length });
@@ -53,6 +50,7 @@ export async function measure() {
     'javascript of WebGPU': weigh(bare.gpu),
     'wasm with threads, in place of wasm': module('ctsn_threads'),
     'javascript of threads': weigh(bare.threads),
+    'wasm as javascript, where a bundler loses the file': weigh(bare.inline),
   };
 }
 

@@ -1,6 +1,8 @@
 // npm test: every suite, one after the other; a suite that cannot run has failed. Ends with the sum of all.
 import { existsSync, mkdirSync, readFileSync, rmSync } from 'node:fs';
-import { chromedriver, chromium, vulkan } from './browser.mjs';
+import { chromedriver, chromium, firefox, vulkan, webkitDriver, xvfb } from './browser.mjs';
+import { tested } from './environments.mjs';
+import { tryExamples } from './examples.mjs';
 import { buildLibrary, relaxedSimd } from './library.mjs';
 import { at, main, need, run, say, Stop } from './step.mjs';
 import { ensureRust } from './toolchain.mjs';
@@ -25,14 +27,38 @@ async function cargoInBrowser(args) {
 }
 
 /** Projects of vitest.config.ts. */
-async function vitest(...projects) {
+const vitest = (...projects) => vitestWith(['vitest'], ...projects);
+
+/** The same, started by that command. */
+async function vitestWith([program, ...args], ...projects) {
   const report = at('out', `${projects[0]}.json`);
   rmSync(report, { force: true });
-  const { status } = await run('vitest', ['run', '--reporter=default', '--reporter=json', `--outputFile.json=${report}`,
+  const { status } = await run(program, [...args, 'run', '--reporter=default', '--reporter=json', `--outputFile.json=${report}`,
     ...projects.flatMap((project) => ['--project', project])], { env: { CHROMIUM: chromium() } });
   if (!existsSync(report)) return settle(status || 1, 0, 0);
   const { numPassedTests, numFailedTests } = JSON.parse(readFileSync(report, 'utf8'));
   return settle(status, numPassedTests, numFailedTests);
+}
+
+/** Releases of Node that the package is made for, the machine's own left out, which the other suites run on. */
+const nodes = ['20.20.2', '22.23.3', '24.21.0'].filter((release) => parseInt(release) !== parseInt(process.versions.node));
+
+/** The package's tests on a release of Node, from the npm package that holds its program. */
+function vitestOn(release) {
+  say(`Node ${release}`);
+  const node = ['--yes', `--package=node-${process.platform}-${process.arch}@${release}`, '--', 'node'];
+  return vitestWith(['npm', 'exec', ...node, at('node_modules', 'vitest', 'vitest.mjs')], 'package');
+}
+
+/** One after the other: the sum of their results. */
+async function each(values, suite) {
+  const sum = { passed: 0, failed: 0 };
+  for (const value of values) {
+    const { passed, failed } = await suite(value);
+    sum.passed += passed;
+    sum.failed += failed;
+  }
+  return sum;
 }
 
 /** A suite that ended badly without a failed test, or without any test, counts as one that failed. */
@@ -55,6 +81,9 @@ const suites = {
     await buildLibrary();
     return vitest('package', 'simd128', 'oldest three');
   },
+  'Node 20, 22, 24: the npm package': () => each(nodes, vitestOn),
+  'Chromium, Firefox, WebKit: the npm package': () => vitest('engines'),
+  'browser: examples from the packed tarball': () => tryExamples(tested),
   'Node: the exported network in onnxruntime': async () => {
     await buildCommand();
     return vitest('onnx');
@@ -67,8 +96,7 @@ const suites = {
 };
 
 await main(async () => {
-  chromium();
-  chromedriver();
+  for (const find of [chromium, chromedriver, firefox, webkitDriver, xvfb]) find();
   await ensureRust();
   mkdirSync(at('out'), { recursive: true });
   const results = [];

@@ -124,6 +124,7 @@ test('what only WebGPU needs is fetched for a device, and never without one', as
   const onCpu = await site.visit();
   expect(onCpu.files).toContainEqual(expect.stringMatching(/^ctsn_relaxed_bg.*\.wasm$/));
   expect(ofGpu(onCpu.files)).toEqual([]);
+  expect(onCpu.files.filter((name) => name.includes('inline'))).toEqual([]);
   const none = 'GPU.prototype.requestAdapter = async () => null';
   const without = await site.visit('?backend=auto', (bare) => bare.addInitScript(none));
   await expect.poll(() => without.page.textContent('#reason'), patience).toContain('finds no adapter');

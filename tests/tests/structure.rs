@@ -186,6 +186,7 @@ fn one_file_imports_each_glue() {
         files.filter(|source| source.text.lines().any(imports)).map(|source| source.path.as_str()).collect()
     };
     assert_eq!(importers("/glue/ctsn.js"), ["web/src/raw.ts"]);
+    assert_eq!(importers("/glue/inline.js"), ["web/src/raw.ts"]);
     assert_eq!(importers("/glue/ctsn_threads.js"), ["web/src/raw-threads.ts", "web/src/thread.ts"]);
     assert_eq!(importers("/raw-threads.js"), ["web/src/load.ts"]);
     assert_eq!(importers("/glue/ctsn_gpu.js"), ["web/src/raw-gpu.ts"]);

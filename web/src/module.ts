@@ -4,22 +4,59 @@ import { CtsnError } from './error.js';
 /** Where a WebAssembly module comes from, if not from beside the package's files. */
 export type WasmSource = string | URL | ArrayBuffer | Uint8Array<ArrayBuffer> | WebAssembly.Module;
 
+/** Where a module is if the page does not say. */
+export interface Beside {
+  /** Its address beside the package's files. A bundler must see the very expression to know the file. */
+  address: () => URL;
+  /** By which options of `loadModel` a page says another. */
+  option: string;
+  /** A module for any browser in a chunk of JavaScript, for pages whose bundler lost the file. No other fetches it. */
+  inline?: () => Promise<{ bytes: Uint8Array<ArrayBuffer> }>;
+}
+
+/** A module, or its bytes. What a page names must be one; in place of what is beside the package, `inline` will do. */
+export async function findModule(
+  source: WasmSource | undefined,
+  { address, option, inline }: Beside,
+): Promise<BufferSource | WebAssembly.Module> {
+  if (source && typeof source !== 'string' && !(source instanceof URL)) return source;
+  try {
+    return await downloadModule(source ?? address());
+  } catch (cause) {
+    // No address at all where a bundler leaves nothing of import.meta.
+    const { code, status, message } = cause instanceof CtsnError ? cause : new CtsnError('wasm', String(cause));
+    const cure = `in Vite before 8 set optimizeDeps: { exclude: ['ctsn'] }; elsewhere give loadModel the option ${option}`;
+    const error = new CtsnError(code, `${message}; ${cure}`, status === undefined ? { cause } : { cause, status });
+    if (source || !inline) throw error;
+    const { bytes } = await inline().catch(() => Promise.reject(error));
+    console.warn(`ctsn: a copy of the module in JavaScript is used, which is larger: ${error.message}`);
+    return bytes;
+  }
+}
+
+/** Servers answer pages in place of files that they lack, so the first bytes are looked at. */
+async function downloadModule(address: string | URL): Promise<Uint8Array<ArrayBuffer>> {
+  const bytes = await download(address);
+  const start = new TextDecoder().decode(bytes.subarray(0, 4));
+  if (start === '\0asm') return bytes;
+  const found = `${bytes.length} bytes that begin with ${JSON.stringify(start)}`;
+  throw new CtsnError('wasm', `${String(address)}: wanted a WebAssembly module, found ${found}`);
+}
+
 /**
  * What compiles and starts a module, once per page, from the first call's source. A start that failed may be tried
  * again.
  */
 export function starter<Exports>(
   initialiseGlue: (options: { module_or_path: BufferSource | WebAssembly.Module }) => Promise<Exports>,
-): (source: WasmSource) => Promise<Exports> {
-  const start = async (source: WasmSource) => {
-    const module = typeof source === 'string' || source instanceof URL ? await download(source) : source;
-    return initialiseGlue({ module_or_path: module }).catch((cause: unknown) => {
+): (source: WasmSource | undefined, beside: Beside) => Promise<Exports> {
+  const start = async (source: WasmSource | undefined, beside: Beside) =>
+    initialiseGlue({ module_or_path: await findModule(source, beside) }).catch((cause: unknown) => {
       throw new CtsnError('wasm', `the WebAssembly module does not start: ${String(cause)}`, { cause });
     });
-  };
   let starting: Promise<Exports> | undefined;
-  return (source) => {
-    starting ??= start(source).catch((error: unknown) => {
+  return (source, beside) => {
+    starting ??= start(source, beside).catch((error: unknown) => {
       starting = undefined;
       throw error;
     });

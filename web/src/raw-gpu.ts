@@ -8,10 +8,9 @@ import { starter, type WasmSource } from './module.js';
 export { Gpu, GpuModel };
 export type { GpuPredictor };
 
-/** The bundler must see this very expression to know the file. */
-const beside = () => new URL('./glue/ctsn_gpu_bg.wasm', import.meta.url);
+const beside = { option: 'gpuWasm', address: () => new URL('./glue/ctsn_gpu_bg.wasm', import.meta.url) };
 
 const start = /* @__PURE__ */ starter(initialiseGlue);
 
 /** Compiles and starts WebGPU's module, once per page, from the first call's source. */
-export const startGpuModule = (source?: WasmSource) => start(source ?? beside());
+export const startGpuModule = (source?: WasmSource) => start(source, beside);

@@ -3,16 +3,15 @@
  * page that may have threads and wants them imports. The other side of it is crate/wasm/src/team.rs.
  */
 import initialiseGlue, { enlist, joined, Predictor } from './glue/ctsn_threads.js';
-import { download } from './download.js';
-import type { WasmSource } from './module.js';
+import { findModule, type WasmSource } from './module.js';
 import type { Engine } from './raw.js';
 import type { Place } from './thread.js';
 
 /** @internal How often a thread has joined the page's own in a piece of work. */
 export { joined };
 
-/** The bundler must see these very expressions to know the files. */
-const beside = () => new URL('./glue/ctsn_threads_bg.wasm', import.meta.url);
+const beside = { option: 'threadsWasm', address: () => new URL('./glue/ctsn_threads_bg.wasm', import.meta.url) };
+/** The bundler must see this very expression to know the file. */
 const newWorker = () => new Worker(new URL('./thread.js', import.meta.url), { type: 'module', name: 'ctsn' });
 
 let starting: Promise<Engine> | undefined;
@@ -22,12 +21,15 @@ let starting: Promise<Engine> | undefined;
  * says.
  */
 export function startThreads(threads: number, source?: WasmSource): Promise<Engine> {
-  starting ??= start(threads, source ?? beside());
+  starting ??= start(threads, source);
   return starting;
 }
 
-async function start(threads: number, source: WasmSource): Promise<Engine> {
-  const bytes = typeof source === 'string' || source instanceof URL ? await download(source) : source;
+async function start(threads: number, source: WasmSource | undefined): Promise<Engine> {
+  const bytes = await findModule(source, beside).catch((error: Error) => {
+    console.warn(`ctsn: without threads, because of ${error.message}`);
+    throw error;
+  });
   const module = bytes instanceof WebAssembly.Module ? bytes : await WebAssembly.compile(bytes);
   const { memory } = await initialiseGlue({ module_or_path: module });
   const others = Array.from({ length: enlist(threads) - 1 }, (_, i) => hire({ module, memory, index: i + 1 }));

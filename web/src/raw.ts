@@ -25,9 +25,9 @@ const probe = [
   ...[10, 8, 1, 6, 0, 0, 0xfd, 0x85, 2, 11],
 ];
 
-/** The bundler must see these very expressions to know the files. */
-const beside = () => new URL('./glue/ctsn_bg.wasm', import.meta.url);
-const relaxedBeside = () => new URL('./glue/ctsn_relaxed_bg.wasm', import.meta.url);
+const common = { option: 'wasm', inline: () => import('./glue/inline.js') };
+const beside = { ...common, address: () => new URL('./glue/ctsn_bg.wasm', import.meta.url) };
+const relaxedBeside = { ...common, address: () => new URL('./glue/ctsn_relaxed_bg.wasm', import.meta.url) };
 
 /** A started module of the processor. */
 export interface Engine {
@@ -48,7 +48,7 @@ const start = /* @__PURE__ */ starter(initialiseGlue);
  */
 export async function startModule({ wasm, relaxedWasm }: CpuSources): Promise<Engine> {
   const relaxed = relaxedSimd() && (relaxedWasm || !wasm);
-  const { memory } = await start((relaxed ? relaxedWasm : wasm) ?? (relaxed ? relaxedBeside() : beside()));
+  const { memory } = await (relaxed ? start(relaxedWasm, relaxedBeside) : start(wasm, beside));
   return { memory, Predictor, threads: 1 };
 }
 

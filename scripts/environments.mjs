@@ -1,0 +1,29 @@
+// Where the package is tried: pages of examples/, and the same ones with other releases of their tools.
+
+/**
+ * `folder`: the page, if it is not the one of examples/ that is called as the environment; `packages`: other releases
+ * than its package.json names; `files`: what is copied over its own, from the repository. What is done with it: `dev`:
+ * its development server is opened; `build`: it is built and that folder is served; `start`: it is built and started;
+ * `node`: it is started and leaves a garment; `types`: its types are checked.
+ */
+export const environments = {
+  'import-map': { build: '.' },
+  vite: { dev: true, build: 'dist' },
+  'vite-7': { folder: 'examples/vite', packages: ['vite@7.3.8'], dev: true, build: 'dist' },
+  'vite-6': { folder: 'examples/vite', packages: ['vite@6.4.6'], dev: true, build: 'dist' },
+  'vite-5': { folder: 'examples/vite', packages: ['vite@5.4.21'], dev: true, build: 'dist' },
+  webpack: { build: 'public' },
+  esbuild: { build: 'public' },
+  'esbuild-plain': { folder: 'examples/esbuild', files: { 'main.js': 'examples/vite/main.js' }, build: 'public' },
+  next: { dev: true, start: true },
+  'react-three-fiber': { dev: true, build: 'dist' },
+  worker: { dev: true, build: 'dist' },
+  'worker-vite-7': { folder: 'examples/worker', packages: ['vite@7.3.8'], dev: true, build: 'dist' },
+  node: { node: true },
+  'types-5.6': { folder: 'tests/types', packages: ['typescript@5.6.3'], types: true },
+  'types-5.9': { folder: 'tests/types', packages: ['typescript@5.9.3'], types: true },
+  'types-7': { folder: 'tests/types', packages: ['typescript@7.0.2'], types: true },
+};
+
+/** Those that `npm test` tries: one without a bundler, and the two bundlers that differ most. */
+export const tested = ['import-map', 'vite', 'esbuild'];

@@ -1,0 +1,21 @@
+// The same with three.js.
+import { DoubleSide, MeshStandardMaterial, type Object3D, type PerspectiveCamera } from 'three';
+import { loadModel } from 'ctsn';
+import { Cloth, ClothLoader, Wardrobe } from 'ctsn/three';
+
+export async function dress(character: Object3D): Promise<Cloth> {
+  const material = new MeshStandardMaterial({ side: DoubleSide });
+  const cloth = new Cloth(await loadModel('model.safetensors'), character, material);
+  cloth.quality = 'auto';
+  cloth.material.color.set('steelblue');
+  cloth.update();
+  return cloth;
+}
+
+export async function share(cloths: Cloth[], camera: PerspectiveCamera): Promise<number> {
+  const wardrobe = new Wardrobe({ budget: 8 });
+  wardrobe.add(...cloths);
+  wardrobe.update(camera);
+  const model = await new ClothLoader().setPath('models/').loadAsync('model.safetensors');
+  return model.vertexCount + wardrobe.spent;
+}
