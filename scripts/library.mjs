@@ -90,7 +90,12 @@ async function bind({ package: crate, glue: bound, name, features: { folder, opt
   say(`binding and optimising ${name}_bg.wasm`);
   mkdirSync(glue, { recursive: true });
   await need('cargo', ['run', '--quiet', ...bindgen, '--', compiled, `${folder}/glue`, bound]);
-  if (name === bound) for (const file of [`${bound}.js`, `${bound}.d.ts`]) copyFileSync(`${folder}/glue/${file}`, `${glue}/${file}`);
+  if (name === bound) {
+    copyFileSync(`${folder}/glue/${bound}.js`, `${glue}/${bound}.js`);
+    // A page whose TypeScript does not know it, with the library of ES2022, would be told so.
+    const types = readFileSync(`${folder}/glue/${bound}.d.ts`, 'utf8').replaceAll('    [Symbol.dispose](): void;\n', '');
+    writeFileSync(`${glue}/${bound}.d.ts`, types);
+  }
   await need('wasm-opt', [...optimise, ...optimiser, `${folder}/glue/${bound}_bg.wasm`, '-o', `${module}.optimised`]);
   renameSync(`${module}.optimised`, module);
   writeFileSync(stamp, digest);
@@ -115,5 +120,6 @@ export async function buildLibrary({ threads = true } = {}) {
   inline();
   say('compiling the npm package');
   await need('tsc', ['-p', at('web', 'tsconfig.json'), ...(threads ? [] : ['--noCheck'])]);
+  for (const licence of ['LICENSE-MIT', 'LICENSE-APACHE']) copyFileSync(at(licence), at('web', licence));
   cpSync(glue, at('web', 'dist', 'glue'), { recursive: true, preserveTimestamps: true });
 }
