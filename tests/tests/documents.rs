@@ -1,6 +1,6 @@
 //! What a source or a page names is there: documents, their headings, paths. And what is meant to be read is short
 //! enough for it.
-#![cfg(not(target_arch = "wasm32"))]
+#![cfg(feature = "machine")]
 
 use ctsn_tests::tree::{Source, names, root, tree};
 
