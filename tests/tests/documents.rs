@@ -135,10 +135,11 @@ fn every_path_named_exists() {
             }
             count += 1;
             // TypeScript is imported by the name that it is compiled to.
-            let word = word.strip_suffix(".js").map_or(word.to_owned(), |stem| format!("{stem}.ts"));
-            let exact = |file: &String| *file == word || file.starts_with(&format!("{word}/"));
-            let below = |file: &String| !rooted && file.ends_with(&format!("/{word}"));
-            if !files.iter().any(|file| exact(file) || below(file)) {
+            let typed = word.strip_suffix(".js").map(|stem| format!("{stem}.ts"));
+            let exact = |file: &str, word: &str| file == word || file.starts_with(&format!("{word}/"));
+            let below = |file: &str, word: &str| !rooted && file.ends_with(&format!("/{word}"));
+            let there = |word: &str| files.iter().any(|file| exact(file, word) || below(file, word));
+            if !there(word) && !typed.as_deref().is_some_and(there) {
                 lost.push(format!("{}: {word}", source.path));
             }
         }
