@@ -1,9 +1,11 @@
 // npm run bench: milliseconds of one prediction at a size that stands for a real garment, natively and in Chromium.
 // npm run bench -- --stages: every operation natively, beside the machine's limits.
 // npm run bench -- --dial: what a mesh stream in every k-th frame costs in accuracy.
+// npm run bench -- --block: how long a page is held up by loads and predictions, with and without a worker.
 // npm run bench -- --peers: beside other runtimes, into docs/results.md.
 import { copyFileSync, mkdirSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
+import { measureBlocks } from './block.mjs';
 import { chromium } from './browser.mjs';
 import { demo, measureDial } from './dial.mjs';
 import { buildLibrary } from './library.mjs';
@@ -89,6 +91,7 @@ await main(async () => {
   chromium();
   await buildLibrary();
   if (process.argv.includes('--dial')) return measureDial();
+  if (process.argv.includes('--block')) return measureBlocks();
   if (process.argv.includes('--peers')) return comparePeers(ctsn);
   say('native, one thread');
   await need(ctsn, ['bench']);

@@ -33,7 +33,7 @@ pub const ALL: [Golden; 4] = golden!["tiny", "small", "small_f16", "isolated"];
 /// A golden file, read.
 pub struct Expected {
     name: &'static str,
-    file: Tensors,
+    file: Tensors<'static>,
     tolerances: BTreeMap<String, f32>,
     /// Poses [J, 3, 4].
     pub poses: Vec<Vec<f32>>,

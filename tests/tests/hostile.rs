@@ -141,7 +141,7 @@ fn every_shape_and_number_is_checked() {
             found.shape.push(1);
         };
         assert_kind(lie(long), "shape", name);
-        let mut empty = Tensor { bytes: Vec::new(), ..tensor.clone() };
+        let mut empty = Tensor { bytes: Vec::new().into(), ..tensor.clone() };
         empty.shape[0] = 0;
         let found = lie(|file| drop(file.tensors.insert(name.clone(), empty)));
         // A cloth without triangles is a cloth; everything else has a size.

@@ -4,6 +4,7 @@ import { describe, lossOf, ownDevice } from './gpu.js';
 import type { GpuSide } from './gpu-side.js';
 import { Fade } from './quality.js';
 import { Streams, type Predictor } from './raw.js';
+import type { GPUDevice } from './webgpu.js';
 
 /** Where a model computes. */
 export type Backend = 'cpu' | 'webgpu';

@@ -1,6 +1,9 @@
 import { fromCore } from './module.js';
 import type { Fade } from './quality.js';
 import type { GpuPredictor } from './raw-gpu.js';
+import type { GPUBuffer, GPUDevice } from './webgpu.js';
+
+type Quadruple = [GPUBuffer, GPUBuffer, GPUBuffer, GPUBuffer];
 
 /**
  * One cloth on the GPU: buffers that hold its last prediction, tightly packed, in metres. They can be used as vertex or
@@ -28,7 +31,7 @@ export class ClothBuffers {
   constructor(predictor: GpuPredictor, device: GPUDevice) {
     this.#predictor = predictor;
     this.device = device;
-    [this.positions, this.drawnPositions, this.normals, this.drawnNormals] = predictor.buffers();
+    [this.positions, this.drawnPositions, this.normals, this.drawnNormals] = predictor.buffers() as Quadruple;
     const nothing = { value: () => undefined, configurable: true };
     for (const buffer of this.#all()) Object.defineProperty(buffer, 'destroy', nothing);
   }

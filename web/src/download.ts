@@ -10,8 +10,10 @@ export interface Progress {
 /** How to ask for a file. */
 export interface DownloadOptions {
   onProgress?: ((progress: Progress) => void) | undefined;
-  /** Passed to `fetch`: headers, credentials, an abort signal. */
+  /** Passed to `fetch`: headers, credentials. Files asked for in a way of one's own are not shared. */
   request?: RequestInit | undefined;
+  /** Ends it; the call is refused with the signal's reason. */
+  signal?: AbortSignal | undefined;
 }
 
 /** Fetches a file to its end, reporting true byte sizes; `file:` addresses work in Node. */

@@ -13,6 +13,12 @@ export type CtsnErrorCode =
   | 'joint_count'
   /** A named pose or a character lacks a joint of the model; `joint` names it. */
   | 'missing_joint'
+  /** The character is not the one that the model was trained for; `joints` names what stands elsewhere, worst first. */
+  | 'misfit'
+  /** A matrix of the pose does not end with the row 0 0 0 1. */
+  | 'transposed'
+  /** The pose is not in metres. */
+  | 'unit'
   /** The pose holds NaN or infinity. */
   | 'not_finite'
   /** The model was used after `dispose()`. */
@@ -30,15 +36,18 @@ export class CtsnError extends Error {
   readonly status?: number;
   /** Name of the joint, for the code `missing_joint`. */
   readonly joint?: string;
+  /** Names of the joints, the worst first, for the code `misfit`. */
+  readonly joints?: readonly string[];
 
   constructor(
     code: CtsnErrorCode,
     message: string,
-    details: { status?: number; joint?: string; cause?: unknown } = {},
+    details: { status?: number; joint?: string; joints?: readonly string[]; cause?: unknown } = {},
   ) {
     super(message, 'cause' in details ? { cause: details.cause } : undefined);
     this.code = code;
     if (details.status !== undefined) this.status = details.status;
     if (details.joint !== undefined) this.joint = details.joint;
+    if (details.joints !== undefined) this.joints = details.joints;
   }
 }

@@ -1,8 +1,10 @@
 /** What only a GPU needs: a chunk of its own, which load.ts imports when there is a device to compute on. */
 import { ClothBuffers } from './buffers.js';
 import { CtsnError } from './error.js';
+import { guarded } from './guard.js';
 import { fromCore, type WasmSource } from './module.js';
 import { Gpu, GpuModel, startGpuModule } from './raw-gpu.js';
+import type { GPUDevice } from './webgpu.js';
 
 export { startGpuModule };
 
@@ -30,14 +32,14 @@ export class GpuSide {
   static async open(file: Uint8Array, device: GPUDevice, { polish, gpuWasm }: OpenOptions): Promise<GpuSide> {
     await startGpuModule(gpuWasm);
     try {
-      return new GpuSide(device, await GpuModel.load(await adopt(device), file, polish));
+      return await guarded(device, async () => new GpuSide(device, await GpuModel.load(await adopt(device), file, polish)));
     } catch (cause) {
       throw fromCore(cause);
     }
   }
 
   async allocate(): Promise<ClothBuffers> {
-    const predictor = await this.#model.predictor().catch((cause: unknown) => {
+    const predictor = await guarded(this.device, () => this.#model.predictor()).catch((cause: unknown) => {
       throw fromCore(cause);
     });
     const buffers = new ClothBuffers(predictor, this.device);
@@ -75,18 +77,20 @@ function adopt(device: GPUDevice): Promise<Gpu> {
 
 /**
  * wgpu cannot be given a device; it asks `navigator.gpu` for one, and reads that property once, during this very call.
- * So for the length of the call an own property of `navigator` hides the real one: its only adapter has only this
- * device.
+ * So for the length of the call an own property of `navigator` hides the real one, or a polyfill's own: its only adapter
+ * has only this device.
  */
 function handOver(device: GPUDevice): Promise<Gpu> {
   const { features, limits, adapterInfo } = device;
   const adapter = { features, limits, info: adapterInfo, requestDevice: () => Promise.resolve(device) };
   const { wgslLanguageFeatures } = navigator.gpu;
   const shim = { wgslLanguageFeatures, requestAdapter: () => Promise.resolve(adapter) };
+  const own = Object.getOwnPropertyDescriptor(navigator, 'gpu');
   Object.defineProperty(navigator, 'gpu', { value: shim, configurable: true });
   try {
     return Gpu.adopt();
   } finally {
-    delete (navigator as { gpu?: GPU }).gpu;
+    if (own) Object.defineProperty(navigator, 'gpu', own);
+    else delete (navigator as { gpu?: GPU }).gpu;
   }
 }

@@ -1,4 +1,5 @@
 import { CtsnError } from './error.js';
+import type { GPUDevice } from './webgpu.js';
 
 const losses = new WeakMap<GPUDevice, AbortSignal>();
 let own: Promise<GPUDevice> | undefined;
@@ -43,7 +44,9 @@ export function lossOf(device: GPUDevice): AbortSignal {
   return loss;
 }
 
+type InfoField = 'description' | 'vendor' | 'architecture' | 'device';
+
 /** What an adapter tells of itself. */
-export function describe({ description, vendor, architecture, device }: GPUAdapterInfo): string {
+export function describe({ description, vendor, architecture, device }: Record<InfoField, string>): string {
   return description || [vendor, architecture, device].filter(Boolean).join(' ') || 'an adapter without a name';
 }

@@ -1,6 +1,7 @@
-export { loadModel, type GpuLoadOptions, type LoadOptions, type ModelSource, type WasmSources } from './load.js';
-export { ClothModel, type CpuClothModel, type Frame } from './model.js';
-export type { PredictOptions, Surface } from './model.js';
+export { loadModel, preload, type GpuLoadOptions, type LoadOptions, type ModelSource, type WasmSources } from './load.js';
+export { ClothModel, type CpuClothModel } from './model.js';
+export type { Frame, PredictOptions, Surface } from './frame.js';
+export type { ModelInfo, Training } from './info.js';
 export type { Quality } from './quality.js';
 export { ClothBuffers } from './buffers.js';
 export type { Backend, BackendChoice, Measured } from './backend.js';

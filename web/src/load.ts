@@ -1,10 +1,12 @@
 import type { BackendChoice, Opener } from './backend.js';
-import { download, type DownloadOptions } from './download.js';
+import { fetchAhead, fetchFile, until } from './arrival.js';
+import type { DownloadOptions } from './download.js';
 import { CtsnError } from './error.js';
 import { ownDevice } from './gpu.js';
 import { ClothModel, type CpuClothModel } from './model.js';
 import type { WasmSource } from './module.js';
 import { readModel, relaxedSimd, startModule, type CpuSources, type Engine } from './raw.js';
+import type { GPUDevice } from './webgpu.js';
 
 /** Where the WebAssembly modules come from, if not from beside the package's files. */
 export interface WasmSources extends CpuSources {
@@ -52,19 +54,37 @@ export async function loadModel(
   options: LoadOptions & { backend?: BackendChoice | undefined; device?: GPUDevice | undefined } = {},
 ): Promise<ClothModel> {
   checkSteps(options.polish);
-  if (options.backend === 'auto' || options.backend === 'webgpu') prepare(options.device, options.gpuWasm);
-  const threads = countThreads(options.threads);
-  const [engine, file] = await Promise.all([startEngine(threads, options), read(source, options)]);
-  const openSide: Opener = async (device) =>
-    (await import('./gpu-side.js')).GpuSide.open(file, device, options);
-  const model = new ClothModel(readModel(engine, file, options.polish), engine, openSide);
+  const { signal, backend = 'cpu', polish } = options;
+  const device = options.device ?? undefined;
+  if (backend === 'auto' || backend === 'webgpu') prepare(device, options.gpuWasm);
+  const read = reader(source);
+  const starting = startEngine(countThreads(options.threads), options);
+  const [engine, file] = await until(signal, Promise.all([starting, read(options)]));
+  let held: Uint8Array | undefined = file;
+  const openSide: Opener = async (device) => {
+    const { GpuSide } = await import('./gpu-side.js');
+    return GpuSide.open(held ?? (await read({ request: options.request })), device, options);
+  };
+  const model = new ClothModel(readModel(engine, file, polish), engine, openSide);
   try {
-    await model.setBackend(options.backend ?? 'cpu', options.device);
+    await until(signal, model.setBackend(backend, device));
+    return model;
   } catch (error) {
     model.dispose();
     throw error;
+  } finally {
+    // A model that changes to a GPU later asks again.
+    held = undefined;
   }
-  return model;
+}
+
+/**
+ * Fetches a model file, and what computes it, before it is wanted. The next `loadModel` of that address takes the file,
+ * which is kept until then.
+ */
+export async function preload(source: string | URL, options: LoadOptions = {}): Promise<void> {
+  const engine = startEngine(countThreads(options.threads), options);
+  await until(options.signal, Promise.all([engine, fetchAhead(source, options)]));
 }
 
 /**
@@ -106,10 +126,15 @@ function checkSteps(polish: number | undefined): void {
 /** A model file: its address, or its bytes. */
 export type ModelSource = string | URL | ArrayBuffer | Uint8Array;
 
-/** The file's bytes, ours: a model that changes to a GPU later reads them once more. */
-async function read(source: ModelSource, options: DownloadOptions): Promise<Uint8Array> {
-  if (source instanceof Uint8Array) return new Uint8Array(source);
-  if (source instanceof ArrayBuffer) return new Uint8Array(source.slice());
-  if (typeof source === 'string' || source instanceof URL) return download(source, options);
-  throw new CtsnError('argument', `a model is an address, an ArrayBuffer or a Uint8Array, not ${typeof source}`);
+/**
+ * What reads the file [bytes], now and when the model changes to a GPU. Bytes that were given are copied: they are the
+ * caller's. Those of an address are not kept.
+ */
+function reader(source: ModelSource): (options: DownloadOptions) => Promise<Uint8Array> {
+  if (typeof source === 'string' || source instanceof URL) return (options) => fetchFile(source, options);
+  if (!(source instanceof Uint8Array || source instanceof ArrayBuffer)) {
+    throw new CtsnError('argument', `a model is an address, an ArrayBuffer or a Uint8Array, not ${typeof source}`);
+  }
+  const bytes = new Uint8Array(source instanceof ArrayBuffer ? source.slice() : source);
+  return () => Promise.resolve(bytes);
 }

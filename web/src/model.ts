@@ -1,54 +1,13 @@
 import { Switch, type Backend, type BackendChoice, type Measured, type Opener } from './backend.js';
 import type { ClothBuffers } from './buffers.js';
 import { CtsnError } from './error.js';
+import type { Frame, PredictOptions, Surface } from './frame.js';
+import type { ModelInfo } from './info.js';
 import { fromCore } from './module.js';
-import { restPose, writePose, type Pose } from './pose.js';
-import { Fade, type Quality } from './quality.js';
+import { PoseWriter, restPose, type Pose } from './pose.js';
+import { fadeOf, type Fade } from './quality.js';
 import type { Engine, Predictor } from './raw.js';
-
-/** How to predict. */
-export interface PredictOptions {
-  /** How much of the network: `full`, the default, `coarse` or `skinned`. */
-  quality?: Quality | undefined;
-  /** @internal A cloth on its way between qualities; takes the place of `quality`. */
-  fade?: Fade | undefined;
-  /** `cpu`: this prediction on the CPU and at once, wherever the model computes its others. */
-  backend?: 'cpu' | undefined;
-  /** `gpu`: leave the prediction in the GPU's buffers, if the model computes there. */
-  output?: 'arrays' | 'gpu' | undefined;
-  /** Buffers to predict into on the GPU, instead of the model's own. */
-  buffers?: ClothBuffers | undefined;
-}
-
-/**
- * A prediction as arrays. From the CPU they are views into the module's memory, valid until the next call on any model.
- * Read back from the GPU they are the caller's own.
- */
-export interface Frame {
-  /** Tells this answer of `predictCloth` from buffers. */
-  readonly output: 'arrays';
-  /** World positions of the cloth vertices, metres [3·n]. */
-  readonly positions: Float32Array;
-  /** World unit normals of the cloth vertices [3·n]. */
-  readonly normals: Float32Array;
-  /**
-   * How much of the network's folds the cloth shows: 1 in poses like those of the training, less in others, 0 where
-   * nothing but plain skinning is left. Always 1 where the model file does not say what poses it was trained on.
-   */
-  readonly confidence: number;
-}
-
-/** The mesh to draw: the cloth's, its vertices split at seams, so that a texture may end where the cloth does not. */
-export interface Surface {
-  /** Drawn vertex -> cloth vertex [d]. */
-  readonly vertex: Uint32Array;
-  /** Texture coordinates [2·d]. */
-  readonly uv: Float32Array;
-  /** Indices of drawn vertices, counter-clockwise seen from outside [3·t]. */
-  readonly triangles: Uint32Array;
-}
-
-const qualities = { full: new Fade('full'), coarse: new Fade('coarse'), skinned: new Fade('skinned') };
+import type { GPUDevice } from './webgpu.js';
 
 /**
  * A garment's network, made by `loadModel`. Dispatches an event `backend` when it begins to compute elsewhere: on a
@@ -80,7 +39,9 @@ export class ClothModel extends EventTarget {
     confidence: 1,
   };
   readonly #switch: Switch;
+  readonly #writer: PoseWriter;
   #pose = new Float32Array();
+  #info: ModelInfo | undefined;
 
   /** @internal */
   constructor(predictor: Predictor, { memory, threads }: Engine, openSide: Opener) {
@@ -96,10 +57,16 @@ export class ClothModel extends EventTarget {
     this.joints = Object.freeze(predictor.joints());
     this.rootIndex = predictor.root();
     this.inverseBind = predictor.inverse_bind();
+    this.#writer = new PoseWriter(this.joints, this.inverseBind);
     this.vertexCount = predictor.vertex_count();
     this.triangles = predictor.triangles();
     this.surface = readSurface(predictor);
     this.threads = threads;
+  }
+
+  /** Sizes, bytes, and what it was trained on and how well. */
+  get info(): ModelInfo {
+    return (this.#info ??= this.#alive().info() as ModelInfo);
   }
 
   /** True after `dispose()`. */
@@ -137,14 +104,15 @@ export class ClothModel extends EventTarget {
   /**
    * Computes elsewhere from now on: on the CPU, on a GPU device (one of our own where none is given), or, with `auto`,
    * where it is faster. Until this resolves the CPU computes. It does not reject for want of a GPU: the CPU goes on
-   * computing, and `fallback` says why.
+   * computing, and `fallback` says why. Answers with this model, typed as one whose answers may be promises.
    */
-  async setBackend(choice: BackendChoice, device?: GPUDevice): Promise<void> {
+  async setBackend(choice: BackendChoice, device?: GPUDevice): Promise<ClothModel> {
     if (choice !== 'auto' && choice !== 'cpu' && choice !== 'webgpu') {
       throw new CtsnError('argument', `backend: "auto", "webgpu" or "cpu" wanted, "${String(choice)}" found`);
     }
     this.#alive();
-    await this.#switch.choose(choice, device);
+    await this.#switch.choose(choice, device ?? undefined);
+    return this;
   }
 
   /** Buffers for a further cloth of this model on the GPU; both use the same weights. */
@@ -167,19 +135,15 @@ export class ClothModel extends EventTarget {
   predictCloth(pose: Pose, options: PredictOptions & { output: 'gpu' }): Frame | ClothBuffers;
   predictCloth(pose: Pose, options?: PredictOptions & { output?: 'arrays' | undefined }): Frame | Promise<Frame>;
   predictCloth(pose: Pose, options?: PredictOptions): Frame | ClothBuffers | Promise<Frame> {
-    const fade = options?.fade ?? qualities[options?.quality ?? 'full'];
-    if (fade === undefined) {
-      const found = String(options?.quality);
-      throw new CtsnError('argument', `quality: "full", "coarse" or "skinned" wanted, "${found}" found`);
-    }
+    const fade = fadeOf(options);
     this.#alive();
-    writePose(pose, this.joints, this.#pose);
+    this.#writer.write(pose, this.#pose);
     const buffers = options?.backend === 'cpu' ? undefined : this.#buffers(options?.buffers);
     if (buffers) {
       if (this.#submit(buffers, fade)) return options?.output === 'gpu' ? buffers : this.#read(buffers, fade);
       // Whoever heard of that may have predicted another pose.
       this.#alive();
-      writePose(pose, this.joints, this.#pose);
+      this.#writer.write(pose, this.#pose);
     }
     return this.#predict(fade);
   }
@@ -279,11 +243,19 @@ export class ClothModel extends EventTarget {
   }
 }
 
-/** A model on the CPU, where every answer is there at once. */
+/** A model on the CPU, where every answer is there at once. After `setBackend` use what that answers. */
 export interface CpuClothModel extends ClothModel {
   predictCloth(pose: Pose, options?: PredictOptions): Frame;
-  setBackend(choice: 'cpu'): Promise<void>;
 }
+
+/** The key of `Disposable`, where TypeScript's library and the browser know it. */
+type DisposeKey = SymbolConstructor extends { readonly dispose: infer Key extends symbol } ? Key : never;
+
+/** `using model = await loadModel(…)` disposes of it at the end of the block. */
+export interface ClothModel extends Record<DisposeKey, () => void> {}
+
+const { dispose } = Symbol as { dispose?: symbol };
+if (dispose) Object.defineProperty(ClothModel.prototype, dispose, { value: ClothModel.prototype.dispose });
 
 /** Codes of failures of the GPU, after which the CPU can go on. */
 const deviceFaults = new Set(['no_adapter', 'no_device', 'limit', 'out_of_memory', 'refused', 'lost', 'missing']);

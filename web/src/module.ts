@@ -70,5 +70,6 @@ export function starter<Exports>(
  */
 export function fromCore(cause: unknown): unknown {
   const refused = cause instanceof Error && !(cause instanceof WebAssembly.RuntimeError);
+  if (cause instanceof CtsnError) return cause;
   return refused ? new CtsnError(cause.name, cause.message) : cause;
 }

@@ -4,31 +4,132 @@ import { CtsnError } from './error.js';
 export type Matrix = ArrayLike<number> | { readonly elements: ArrayLike<number> };
 
 /**
- * World matrices of the joints, in metres: 16·J numbers in the order of `ClothModel.joints`, or one matrix per joint
- * name. Names that are no joints are ignored.
+ * World matrices of the joints, in metres: 16·J numbers in the order of `ClothModel.joints`, one matrix after the other
+ * or each by itself; or one matrix per joint name. Names that are no joints are ignored.
  */
-export type Pose = Float32Array | Readonly<Record<string, Matrix>>;
+export type Pose = ArrayLike<number> | readonly Matrix[] | Readonly<Record<string, Matrix>>;
 
-/** Writes a pose to `out` [16·J]. */
-export function writePose(pose: Pose, joints: readonly string[], out: Float32Array): void {
-  if (pose instanceof Float32Array) {
-    if (pose.length !== out.length) throw wrongLength(`the pose of ${joints.length} joints`, out.length, pose.length);
-    out.set(pose);
-    return;
+/**
+ * How many times farther from one another, or nearer, joints may be than where they were bound. Cartoons stretch; a
+ * pose in centimetres is a hundred times too large.
+ */
+const STRETCH = 20;
+
+/** Writes poses of one model, and refuses what cannot be one. */
+export class PoseWriter {
+  readonly #joints: readonly string[];
+  /** Of each joint the one bound nearest, and how far away that is [J]. Bones are rigid: this hardly changes. */
+  readonly #nearest: readonly { joint: number; distance: number }[];
+
+  /** `inverseBind`: row-major 3×4, one joint after the other [12·J]. */
+  constructor(joints: readonly string[], inverseBind: Float32Array) {
+    this.#joints = joints;
+    const places = joints.map((_, joint) => placeOf(inverseBind.subarray(12 * joint, 12 * joint + 12)));
+    this.#nearest = places.map((place, at) => {
+      const distances = places.map((other, joint) => (joint === at ? Infinity : distance(place, other)));
+      const joint = distances.indexOf(Math.min(...distances));
+      // A joint by itself, or bound at another's place, tells nothing.
+      return joint < 0 ? { joint: at, distance: 0 } : { joint, distance: distances[joint]! };
+    });
   }
-  for (let joint = 0; joint < joints.length; joint++) {
-    const name = joints[joint]!;
-    const matrix = Object.hasOwn(pose, name) ? pose[name] : undefined;
-    if (!matrix) throw new CtsnError('missing_joint', `the pose lacks the joint "${name}"`, { joint: name });
-    const numbers = 'elements' in matrix ? matrix.elements : matrix;
-    if (numbers.length !== 16) throw wrongLength(`the matrix of joint "${name}"`, 16, numbers.length);
-    out.set(numbers, 16 * joint);
+
+  /** Writes a pose to `out` [16·J]. */
+  write(pose: Pose, out: Float32Array): void {
+    if (pose instanceof Float32Array && pose.length === out.length) out.set(pose);
+    else if (isList(pose)) this.#writeList(pose, out);
+    else if (typeof pose === 'object' && pose) this.#writeNamed(pose, out);
+    else throw new CtsnError('argument', `a pose is a list of numbers or matrices, or matrices by name, not ${String(pose)}`);
+    this.#checkRows(out);
+    this.#checkUnit(out);
+  }
+
+  #writeList(pose: ArrayLike<number> | readonly Matrix[], out: Float32Array): void {
+    const joints = this.#joints.length;
+    if (pose.length === out.length) return out.set(pose as ArrayLike<number>);
+    if (pose.length === joints && typeof pose[0] === 'object') {
+      for (let joint = 0; joint < joints; joint++) this.#writeMatrix(pose[joint] as Matrix, joint, out);
+      return;
+    }
+    const wanted = `${out.length} numbers, or ${joints} matrices of 16`;
+    throw new CtsnError('joint_count', `the pose of ${joints} joints: ${wanted} wanted, ${pose.length} found`);
+  }
+
+  #writeNamed(pose: Readonly<Record<string, Matrix>>, out: Float32Array): void {
+    for (let joint = 0; joint < this.#joints.length; joint++) {
+      const name = this.#joints[joint]!;
+      const matrix = Object.hasOwn(pose, name) ? pose[name] : undefined;
+      if (!matrix) throw new CtsnError('missing_joint', `the pose lacks the joint "${name}"`, { joint: name });
+      this.#writeMatrix(matrix, joint, out);
+    }
+  }
+
+  #writeMatrix(matrix: Matrix | null | undefined, joint: number, out: Float32Array): void {
+    const numbers = matrix && (('elements' in matrix ? matrix.elements : matrix) as Partial<ArrayLike<number>>);
+    if (numbers?.length !== 16) {
+      const found = numbers?.length ?? String(matrix);
+      throw new CtsnError('joint_count', `the matrix of joint "${this.#joints[joint]!}": 16 numbers wanted, ${found} found`);
+    }
+    out.set(numbers as ArrayLike<number>, 16 * joint);
+  }
+
+  /** Refuses matrices whose last row is not 0 0 0 1: those of other libraries have their translation there. */
+  #checkRows(pose: Float32Array): void {
+    for (let at = 0; at < pose.length; at += 16) {
+      const off = Math.abs(pose[at + 3]!) + Math.abs(pose[at + 7]!) + Math.abs(pose[at + 11]!);
+      const error = off + Math.abs(pose[at + 15]! - 1);
+      // What is not finite the core refuses, with its place.
+      if (!(error > 1e-3 && error < Infinity)) continue;
+      const row = [3, 7, 11, 15].map((i) => pose[at + i]!).join(' ');
+      const what = `the matrix of joint "${this.#joints[at / 16]!}" has the last row ${row}, wanted is 0 0 0 1`;
+      throw new CtsnError('transposed', `${what}: column after column, as in three.js; is this pose transposed?`);
+    }
+  }
+
+  /** Refuses a pose in centimetres: one where most joints are far from one another, not a stray one. */
+  #checkUnit(pose: Float32Array): void {
+    let judged = 0;
+    let far = 0;
+    let sum = 0;
+    for (let joint = 0; joint < this.#nearest.length; joint++) {
+      const { joint: near, distance } = this.#nearest[joint]!;
+      if (!(distance > 0)) continue;
+      const [a, b] = [16 * joint + 12, 16 * near + 12];
+      const x = pose[a]! - pose[b]!;
+      const y = pose[a + 1]! - pose[b + 1]!;
+      const z = pose[a + 2]! - pose[b + 2]!;
+      const ratio = Math.sqrt(x * x + y * y + z * z) / distance;
+      judged++;
+      if (!(ratio > STRETCH)) continue;
+      far++;
+      sum += ratio;
+    }
+    if (2 * far <= judged) return;
+    const times = `the joints stand ${(sum / far).toPrecision(2)} times as far from one another as they were bound`;
+    throw new CtsnError('unit', `${times}: metres are wanted; is this pose in centimetres?`);
   }
 }
 
-function wrongLength(what: string, wanted: number, found: number): CtsnError {
-  return new CtsnError('joint_count', `${what}: ${wanted} numbers wanted, ${found} found`);
+type Point = readonly [number, number, number];
+
+/** Where a joint was bound, from its inverse bind matrix, row-major 3×4. */
+function placeOf(m: ArrayLike<number>): Point {
+  const [a, b, c, x, d, e, f, y, g, h, i, z] = m as unknown as Twelve;
+  const [p, q, r] = [e * i - f * h, f * g - d * i, d * h - e * g];
+  const scale = -1 / (a * p + b * q + c * r);
+  return [
+    scale * (p * x + (c * h - b * i) * y + (b * f - c * e) * z),
+    scale * (q * x + (a * i - c * g) * y + (c * d - a * f) * z),
+    scale * (r * x + (b * g - a * h) * y + (a * e - b * d) * z),
+  ];
 }
+
+type Twelve = [number, number, number, number, number, number, number, number, number, number, number, number];
+
+const distance = (a: Point, b: Point) => Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+
+/** Whether a pose comes in the order of the joints, not by their names. */
+const isList = (pose: Pose): pose is ArrayLike<number> | readonly Matrix[] =>
+  Array.isArray(pose) || ArrayBuffer.isView(pose);
 
 /** Every joint at the origin [16·J]. */
 export function restPose(joints: number): Float32Array {

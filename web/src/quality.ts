@@ -1,3 +1,4 @@
+import { CtsnError } from './error.js';
 import { Streams, type Folds, type Predictor } from './raw.js';
 
 /**
@@ -91,6 +92,12 @@ export class Fade {
     return predictor.predict_folds(this.#folds, aim, first ? 1 : 1 / this.every, this.#skeleton, this.#mesh);
   }
 
+  /** @internal Takes those shares, as another cloth, or the same one in a page, has them. */
+  fix(skeleton: number, mesh: number): void {
+    this.#skeleton = skeleton;
+    this.#mesh = mesh;
+  }
+
   /** Frees its memory in the module. */
   dispose(): void {
     this.#folds?.free();
@@ -101,4 +108,13 @@ export class Fade {
 
 function toward(from: number, to: number, step: number): number {
   return from < to ? Math.min(from + step, to) : Math.max(from - step, to);
+}
+
+const fixed = { full: new Fade('full'), coarse: new Fade('coarse'), skinned: new Fade('skinned') };
+
+/** @internal What a call of `predictCloth` asks for. */
+export function fadeOf(options: { quality?: Quality | undefined; fade?: Fade | undefined } = {}): Fade {
+  const fade = options.fade ?? fixed[options.quality ?? 'full'];
+  if (fade) return fade;
+  throw new CtsnError('argument', `quality: "full", "coarse" or "skinned" wanted, "${String(options.quality)}" found`);
 }

@@ -2,9 +2,9 @@ import { createServer, type Server } from 'node:http';
 import { readFileSync } from 'node:fs';
 import type { AddressInfo } from 'node:net';
 import { afterAll, beforeAll, expect, test, vi } from 'vitest';
-import { CtsnError, loadModel, type ClothModel, type Pose, type WasmSources } from 'ctsn';
+import { CtsnError, loadModel, preload, type ClothModel, type Pose, type WasmSources } from 'ctsn';
 import { FakeNavigator } from './fake-gpu.js';
-import { bytesOf, loadGolden } from './golden.js';
+import { bytesOf, loadGolden, spliceHeader } from './golden.js';
 
 const whole = bytesOf('small');
 
@@ -19,15 +19,10 @@ async function failure(work: () => unknown): Promise<CtsnError> {
   throw new Error('nothing was thrown');
 }
 
-/** `small` with its header's text changed; the length in front follows. */
+/** `small` with its header's text changed. */
 function withHeader(change: (header: string) => string): Uint8Array {
   const length = new DataView(whole.buffer).getUint32(0, true);
-  const text = new TextEncoder().encode(change(new TextDecoder().decode(whole.subarray(8, 8 + length))));
-  const bytes = new Uint8Array(8 + text.length + whole.length - 8 - length);
-  new DataView(bytes.buffer).setUint32(0, text.length, true);
-  bytes.set(text, 8);
-  bytes.set(whole.subarray(8 + length), 8 + text.length);
-  return bytes;
+  return spliceHeader(whole, change(new TextDecoder().decode(whole.subarray(8, 8 + length))));
 }
 
 test('a file cut off anywhere is refused', async () => {
@@ -83,6 +78,25 @@ test('poses: wrong length, missing joint, NaN; the model lives on', async () => 
   model.dispose();
 });
 
+test('poses as pages have them: lists, matrices, doubles; transposed or in centimetres they are refused', async () => {
+  const { model, poses } = await loadGolden('small');
+  const pose = poses[1]!;
+  const wanted = model.predictCloth(pose).positions.slice();
+  const matrices = model.joints.map((_, joint) => [...pose.subarray(16 * joint, 16 * joint + 16)]);
+  const forms: Pose[] = [[...pose], Float64Array.from(pose), matrices, matrices.map((elements) => ({ elements }))];
+  for (const form of forms) expect(model.predictCloth(form).positions).toEqual(wanted);
+  const refuse = (form: unknown) => failure(() => model.predictCloth(form as Pose));
+  expect(await refuse(matrices.slice(1))).toMatchObject({ code: 'joint_count' });
+  expect(await refuse(matrices.map(() => [1, 2]))).toMatchObject({ code: 'joint_count' });
+  expect(await refuse(matrices.map(() => null))).toMatchObject({ code: 'joint_count' });
+  for (const nothing of [undefined, null, 7, 'pose']) expect(await refuse(nothing)).toMatchObject({ code: 'argument' });
+  const transposed = pose.map((_, at) => pose[at - (at % 16) + 4 * (at % 4) + Math.floor((at % 16) / 4)]!);
+  expect(await refuse(transposed)).toMatchObject({ code: 'transposed', message: expect.stringContaining(model.joints[0]!) as string });
+  const centimetres = pose.map((value, at) => (at % 16 > 11 && at % 16 < 15 ? 100 * value : value));
+  expect(await refuse(centimetres)).toMatchObject({ code: 'unit', message: expect.stringMatching(/centimetres/) as string });
+  model.dispose();
+});
+
 test('a model that was disposed of', async () => {
   const { model, poses } = await loadGolden('tiny');
   expect(model.disposed).toBe(false);
@@ -95,12 +109,21 @@ test('a model that was disposed of', async () => {
 
 let server: Server;
 let address: string;
+/** How often each path was asked for, and which of the answers that last were cut short by the page. */
+const asked = new Map<string, number>();
+const cut = new Set<string>();
 beforeAll(async () => {
   server = createServer((request, response) => {
+    asked.set(request.url!, (asked.get(request.url!) ?? 0) + 1);
     if (request.url === '/broken') {
       response.writeHead(200, { 'content-length': whole.length });
       response.write(whole.subarray(0, 1000));
       return void setTimeout(() => response.destroy(), 50);
+    }
+    if (request.url === '/slow') {
+      response.writeHead(200, { 'content-length': whole.length });
+      response.write(whole.subarray(0, 1000));
+      return void response.on('close', () => cut.add('/slow'));
     }
     if (request.url !== '/small') return void response.writeHead(404).end();
     response.writeHead(200, { 'content-length': whole.length });
@@ -133,6 +156,54 @@ test('loading that fails: no such file, no server, a broken connection, no local
   });
   expect(await failure(() => loadModel(new URL('none.safetensors', import.meta.url)))).toMatchObject({ code: 'fetch' });
   await expect(loadModel(`${address}/small`, { request: { signal: AbortSignal.abort() } })).rejects.toThrow(/abort/);
+});
+
+test('twenty loads of one address are one request; each gets its model, and hears of its progress', async () => {
+  asked.clear();
+  const progress: number[] = [];
+  const onProgress = ({ loaded }: { loaded: number }) => progress.push(loaded);
+  const models = await Promise.all(Array.from({ length: 20 }, () => loadModel(`${address}/small`, { onProgress })));
+  expect(asked.get('/small')).toBe(1);
+  expect(progress.filter((loaded) => loaded === whole.length)).toHaveLength(20);
+  models.forEach((model) => model.dispose());
+  (await loadModel(`${address}/small`)).dispose();
+  expect(asked.get('/small'), 'nothing is kept that nobody asked to keep').toBe(2);
+  const own = () => loadModel(`${address}/small`, { request: { headers: { 'x-a': 'b' } } });
+  (await Promise.all([own(), own()])).forEach((model) => model.dispose());
+  expect(asked.get('/small')).toBe(4);
+});
+
+test('what is preloaded is asked for once, and taken by the next', async () => {
+  asked.clear();
+  await preload(`${address}/small`);
+  expect(asked.get('/small')).toBe(1);
+  const two = await Promise.all([loadModel(`${address}/small`), loadModel(`${address}/small`)]);
+  expect(asked.get('/small')).toBe(1);
+  two.forEach((model) => model.dispose());
+  expect(await failure(() => preload(`${address}/none`))).toMatchObject({ code: 'fetch', status: 404 });
+  expect(await failure(() => loadModel(`${address}/none`)), 'a failure is not kept').toMatchObject({ status: 404 });
+});
+
+test('a signal ends a load, but not that of others who want the same', async () => {
+  asked.clear();
+  const reason = new Error('the page went elsewhere');
+  const controllers = [new AbortController(), new AbortController()];
+  const [first, second, third] = [...controllers.map(({ signal }) => signal), undefined].map((signal) =>
+    loadModel(`${address}/small`, { signal }));
+  controllers[0]!.abort(reason);
+  await expect(first).rejects.toBe(reason);
+  const model = await third!;
+  expect(model.vertexCount).toBe(600);
+  (await second!).dispose();
+  model.dispose();
+  expect(asked.get('/small')).toBe(1);
+  const alone = new AbortController();
+  const load = loadModel(`${address}/slow`, { signal: alone.signal });
+  await expect.poll(() => asked.get('/slow')).toBe(1);
+  alone.abort(reason);
+  await expect(load).rejects.toBe(reason);
+  await expect.poll(() => cut.has('/slow')).toBe(true);
+  await expect(loadModel(whole, { signal: AbortSignal.abort(reason) })).rejects.toBe(reason);
 });
 
 test('the module may be given; one that is broken is refused, and the next try may succeed', async () => {

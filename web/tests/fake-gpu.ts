@@ -29,13 +29,25 @@ export function startGpuModule(): Promise<void> {
 }
 
 export class Gpu {
-  static adopt(): Promise<Gpu> {
-    return gpu.refusals-- > 0 ? Promise.reject(coreError('refused')) : Promise.resolve(new Gpu());
+  /** As wgpu does, it reads `navigator.gpu` at once, and gets the device from that later. */
+  static async adopt(): Promise<Gpu> {
+    const handed = (navigator as unknown as FakeNavigator).gpu;
+    if (gpu.refusals-- > 0) throw coreError('refused');
+    const adapter = await handed.requestAdapter();
+    return new Gpu((await adapter!.requestDevice()) as unknown as FakeDevice);
   }
+
+  private constructor(readonly device: FakeDevice) {}
 }
 
 export class GpuModel {
-  static async load(_: Gpu, file: Uint8Array): Promise<GpuModel> {
+  static async load({ device }: Gpu, file: Uint8Array): Promise<GpuModel> {
+    try {
+      device.createBuffer();
+    } catch {
+      // It went right through the module, whose promise stays open.
+      return new Promise(() => undefined);
+    }
     const predictor = readModel(await startModule({}), file);
     const numbers = 3 * predictor.vertex_count();
     predictor.free();
@@ -83,6 +95,7 @@ class GpuPredictor {
 
 /** A `GPUDevice` as far as this package looks at one. */
 export class FakeDevice extends EventTarget {
+  readonly queue = {};
   readonly features = new Set<string>();
   readonly limits = {};
   readonly adapterInfo: object;
@@ -95,6 +108,9 @@ export class FakeDevice extends EventTarget {
     this.lost = new Promise((resolve) => (this.lose = () => resolve({ reason: 'destroyed', message: '' })));
   }
 
+  /** Where the module begins to use it. */
+  createBuffer(): void {}
+
   /** Where the package takes a device. */
   get lent(): GPUDevice {
     return this as unknown as GPUDevice;
@@ -106,6 +122,11 @@ export class FakeDevice extends EventTarget {
   }
 }
 
+interface FakeGpu {
+  readonly wgslLanguageFeatures: Set<string>;
+  requestAdapter(): Promise<{ requestDevice(): Promise<FakeDevice> } | null>;
+}
+
 /** The browser's `navigator`, whose adapter hands out new devices: `devices`, in their order. */
 export class FakeNavigator {
   readonly devices: FakeDevice[] = [];
@@ -113,7 +134,7 @@ export class FakeNavigator {
   adapter = true;
 
   // On the prototype, as in a browser, where an own property hides it for a moment.
-  get gpu(): object {
+  get gpu(): FakeGpu {
     const requestDevice = () => {
       const device = new FakeDevice(`device ${this.devices.length}`);
       this.devices.push(device);

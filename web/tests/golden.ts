@@ -55,3 +55,28 @@ function split(values: Float32Array, count: number): Float32Array[] {
   const length = values.length / count;
   return Array.from({ length: count }, (_, i) => values.subarray(i * length, (i + 1) * length));
 }
+
+export type Rename = (name: string, at: number) => string;
+
+/** A golden model whose joints have other names. */
+export function renameJoints(name: string, rename: Rename): Uint8Array {
+  const bytes = bytesOf(name);
+  const length = new DataView(bytes.buffer).getUint32(0, true);
+  const header = JSON.parse(new TextDecoder().decode(bytes.subarray(8, 8 + length))) as { __metadata__: { ctsn: string } };
+  const description = JSON.parse(header.__metadata__.ctsn) as { joints: string[] };
+  description.joints = description.joints.map(rename);
+  header.__metadata__.ctsn = JSON.stringify(description);
+  const text = JSON.stringify(header);
+  return spliceHeader(bytes, text.padEnd(8 * Math.ceil(text.length / 8)));
+}
+
+/** A safetensors file with another text for its header. */
+export function spliceHeader(bytes: Uint8Array, header: string): Uint8Array {
+  const before = new DataView(bytes.buffer).getUint32(0, true);
+  const text = new TextEncoder().encode(header);
+  const spliced = new Uint8Array(8 + text.length + bytes.length - 8 - before);
+  new DataView(spliced.buffer).setUint32(0, text.length, true);
+  spliced.set(text, 8);
+  spliced.set(bytes.subarray(8 + before), 8 + text.length);
+  return spliced;
+}

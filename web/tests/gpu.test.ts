@@ -3,7 +3,7 @@ import { getEventListeners } from 'node:events';
 import { MeshBasicMaterial } from 'three';
 import { afterEach, beforeEach, expect, test, vi } from 'vitest';
 import { loadModel, type BackendChoice, type ClothModel, type Frame, type GpuLoadOptions } from 'ctsn';
-import { Cloth } from 'ctsn/three';
+import { Cloth, deviceOf } from 'ctsn/three';
 import { startModule } from '../dist/raw.js';
 import { difference } from '../../tests/browser/safetensors.js';
 import { collectGarbage } from './allocation.js';
@@ -109,6 +109,51 @@ test('a device whose adoption was refused may be tried again', async () => {
   await model.setBackend('webgpu', device.lent);
   expect(model.backend).toBe('webgpu');
   expect(model.fallback).toBeUndefined();
+  model.dispose();
+});
+
+test('a device whose call throws right through the module is given up, and the load settles', async () => {
+  // A copy of the package: its module is of no use afterwards.
+  vi.resetModules();
+  const fresh = await import('ctsn');
+  const device = new FakeDevice('brittle');
+  const refuse = () => {
+    throw new Error('no room');
+  };
+  device.createBuffer = refuse;
+  const model = await fresh.loadModel(bytesOf('tiny'), { backend: 'webgpu', device: device.lent });
+  expect([model.backend, model.fallback]).toEqual(['cpu', 'the GPU device threw in createBuffer(): Error: no room']);
+  expect(device.createBuffer, "the page's own method is put back").toBe(refuse);
+  await model.setBackend('webgpu', new FakeDevice('sound').lent);
+  expect(model.fallback).toMatch(/threw in createBuffer/);
+  model.dispose();
+  vi.resetModules();
+});
+
+test('methods of a device are its own again when nothing is being loaded', async () => {
+  const device = new FakeDevice('lent');
+  const both = await Promise.all([load(device), load(device)]);
+  expect(both.map(({ backend }) => backend)).toEqual(['webgpu', 'webgpu']);
+  expect(Object.hasOwn(device, 'createBuffer')).toBe(false);
+  both.forEach((model) => model.dispose());
+});
+
+test('an own navigator.gpu, as a polyfill leaves it, is put back', async () => {
+  const own = browser.gpu;
+  Object.defineProperty(browser, 'gpu', { value: own, configurable: true });
+  const model = await load();
+  expect(model.backend).toBe('webgpu');
+  expect(Object.getOwnPropertyDescriptor(browser, 'gpu')?.value).toBe(own);
+  model.dispose();
+});
+
+test('a renderer before its init() has no device, and then one of ours is used, and replaced when lost', async () => {
+  const device = deviceOf({ backend: { isWebGPUBackend: true, device: null } });
+  expect(device).toBeUndefined();
+  const model = await loadModel(bytesOf('tiny'), { backend: 'webgpu', device: null as unknown as undefined });
+  expect(model.adapter).toBe('device 0');
+  browser.devices[0]!.lose();
+  await expect.poll(() => model.adapter).toBe('device 1');
   model.dispose();
 });
 

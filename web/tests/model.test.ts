@@ -94,6 +94,24 @@ test('the sizes a page needs', async () => {
   model.dispose();
 });
 
+test('a model says what it is made of, what it costs and what it learned from', async () => {
+  const { model } = await loadGolden('small');
+  const { training, bytes, ...sizes } = model.info;
+  expect(sizes).toMatchObject({ vertices: 600, joints: model.joints.length, knowsPoses: false, polish: 0, bodyVertices: 0 });
+  expect(training, 'a file that does not say').toBeUndefined();
+  // Weights and activations: more than the half-precision file, less than three times the full one.
+  expect(bytes).toBeGreaterThan(bytesOf('small_f16').length / 2);
+  expect(bytes).toBeLessThan(3 * bytesOf('small').length);
+  expect(model.info).toBe(model.info);
+  model.dispose();
+  const shirt = await loadModel(new Uint8Array(readFileSync(new URL('../../www/public/tshirt.safetensors', import.meta.url))));
+  expect(shirt.info).toMatchObject({ polish: 16, knowsPoses: true, training: { character: 'andy.glb', version: expect.stringMatching(/\d/) as string } });
+  expect(shirt.info.training!.clips!.length).toBeGreaterThan(10);
+  expect(shirt.info.training!.distance).toBeGreaterThan(0.001);
+  expect(shirt.info.training!.distance).toBeLessThan(0.02);
+  shirt.dispose();
+});
+
 test('the answer is the same object at every call, and so are its views until the memory grows', async () => {
   const { model, poses, positions, tolerance } = await loadGolden('small');
   const prediction = model.predictCloth(poses[0]!);
@@ -111,7 +129,7 @@ test('the answer is the same object at every call, and so are its views until th
 test('dispose() gives the memory back', async () => {
   const bytes = bytesOf('small');
   const first = await loadModel(bytes);
-  const { buffer } = first.predictCloth(new Float32Array(16 * first.joints.length).fill(1)).positions;
+  const { buffer } = first.predictCloth(readGolden('small').poses[0]!).positions;
   first.dispose();
   for (let round = 0; round < 50; round++) (await loadModel(bytes)).dispose();
   // A memory that had grown would have detached its old buffer.

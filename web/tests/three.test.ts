@@ -7,15 +7,14 @@ import {
   MeshBasicMaterial,
   Quaternion,
   REVISION,
-  Skeleton,
   Vector3,
 } from 'three';
 import type { Bone, BufferAttribute, Material, Object3D, Sphere } from 'three';
 import { expect, test } from 'vitest';
 import { ClothLoader, Cloth } from 'ctsn/three';
-import { CtsnError, loadModel } from 'ctsn';
+import { CtsnError, loadModel, type CpuClothModel } from 'ctsn';
 import { difference } from '../../tests/browser/safetensors.js';
-import { characterOf } from './character.js';
+import { characterOf, skeletonOf } from './character.js';
 import { bytesOf, loadConfident, loadGolden } from './golden.js';
 
 const material = new MeshBasicMaterial();
@@ -114,7 +113,7 @@ test('bones are found as a loader names them, in a skeleton or anywhere below an
   const clean = characterOf(golden.model.joints, golden.poses[0]!, (name) => `${name}_1`);
   clean.children.forEach((bone, i) => (bone.userData['name'] = joints[i]));
   expect(new Cloth(golden.model, clean, material).bones).toEqual(clean.children);
-  const skeleton = new Skeleton(characterOf(golden.model.joints, golden.poses[0]!).children as Bone[]);
+  const skeleton = skeletonOf(golden.model, characterOf(golden.model.joints, golden.poses[0]!).children as Bone[]);
   expect(new Cloth(golden.model, skeleton, material).bones).toEqual(skeleton.bones);
   const decoy = new Group();
   decoy.name = joints[1]!;
@@ -227,6 +226,32 @@ test('the loader knows its manager, its path and the failure', async () => {
   await expect(loader.loadAsync('AAAA')).rejects.toMatchObject({ code: 'not_safetensors' });
   await Promise.resolve();
   expect(events.map((event) => event.split(' ')[0]).slice(2)).toEqual(['start', 'error', 'end']);
+});
+
+test('what onLoad throws is told, and the manager ends; a load may be aborted, by the loader or its manager', async () => {
+  const events: string[] = [];
+  const manager = new LoadingManager(() => events.push('all'), undefined, () => events.push('error'));
+  const loader = new ClothLoader(manager);
+  const data = `data:application/octet-stream;base64,${Buffer.from(bytesOf('tiny')).toString('base64')}`;
+  const load = (onLoad: (model: CpuClothModel) => void) =>
+    new Promise<unknown>((resolve) => loader.load(data, onLoad, undefined, resolve));
+  const thrown = new Error('of the page');
+  expect(await load((model) => {
+    model.dispose();
+    throw thrown;
+  })).toBe(thrown);
+  await expect.poll(() => events).toEqual(['error', 'all']);
+  const aborted = load(() => events.push('loaded'));
+  loader.abort();
+  expect(await aborted).toMatchObject({ name: 'AbortError' });
+  // Managers abort since r179.
+  if ('abort' in manager) {
+    const ended = load(() => events.push('loaded'));
+    manager.abort();
+    expect(await ended).toMatchObject({ name: 'AbortError' });
+  }
+  expect(events).not.toContain('loaded');
+  (await loader.loadAsync(data)).dispose();
 });
 
 test('the three.js under test is the one this project means', () => {

@@ -5,6 +5,7 @@
 use crate::{Error, Result};
 use half::f16;
 use miniserde::json::{self, Array, Number, Object, Value};
+use std::borrow::Cow;
 use std::collections::{BTreeMap, BinaryHeap};
 
 /// Element type of a stored tensor.
@@ -31,18 +32,18 @@ impl Dtype {
     }
 }
 
-/// One stored tensor: type, shape and little-endian bytes.
+/// One stored tensor: type, shape and little-endian bytes, borrowed from a file that was read.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Tensor {
+pub struct Tensor<'a> {
     /// Element type.
     pub dtype: Dtype,
     /// Shape, row-major.
     pub shape: Vec<usize>,
     /// Little-endian elements.
-    pub bytes: Vec<u8>,
+    pub bytes: Cow<'a, [u8]>,
 }
 
-impl Tensor {
+impl Tensor<'_> {
     /// Tensor of F32 elements.
     pub fn f32(shape: &[usize], values: &[f32]) -> Self {
         debug_assert_eq!(shape.iter().product::<usize>(), values.len());
@@ -79,16 +80,16 @@ impl Tensor {
 
 /// The content of one safetensors file.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Tensors {
+pub struct Tensors<'a> {
     /// `__metadata__`: free strings.
     pub metadata: BTreeMap<String, String>,
     /// Tensors by name.
-    pub tensors: BTreeMap<String, Tensor>,
+    pub tensors: BTreeMap<String, Tensor<'a>>,
 }
 
-impl Tensors {
+impl<'a> Tensors<'a> {
     /// Reads a whole file; nothing in it is trusted.
-    pub fn parse(bytes: &[u8]) -> Result<Self> {
+    pub fn parse(bytes: &'a [u8]) -> Result<Self> {
         let malformed = |reason: &str| Error::NotSafetensors(reason.to_owned());
         let (length, rest) = bytes.split_first_chunk::<8>().ok_or_else(|| malformed("shorter than 8 bytes"))?;
         let length = usize::try_from(u64::from_le_bytes(*length)).unwrap_or(usize::MAX);
@@ -121,6 +122,13 @@ impl Tensors {
         }
     }
 
+    /// The same with bytes of its own.
+    pub fn into_owned(self) -> Tensors<'static> {
+        let owned = |tensor: Tensor<'_>| Tensor { bytes: Cow::Owned(tensor.bytes.into_owned()), ..tensor };
+        let tensors = self.tensors.into_iter().map(|(name, tensor)| (name, owned(tensor))).collect();
+        Tensors { metadata: self.metadata, tensors }
+    }
+
     /// The file's bytes: header, then tensors in the order of their names.
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut header = Object::new();
@@ -142,12 +150,12 @@ impl Tensors {
         header.extend(std::iter::repeat_n(' ', header.len().next_multiple_of(8) - header.len()));
         let mut bytes = (header.len() as u64).to_le_bytes().to_vec();
         bytes.extend(header.as_bytes());
-        self.tensors.values().for_each(|tensor| bytes.extend(&tensor.bytes));
+        self.tensors.values().for_each(|tensor| bytes.extend(&*tensor.bytes));
         bytes
     }
 
     /// The tensor of that name.
-    pub fn get(&self, name: &str) -> Result<&Tensor> {
+    pub fn get(&self, name: &str) -> Result<&Tensor<'a>> {
         self.tensors.get(name).ok_or_else(|| Error::MissingTensor(name.to_owned()))
     }
 
@@ -171,7 +179,7 @@ impl Tensors {
         }
     }
 
-    fn checked(&self, name: &str, shape: &[Option<usize>]) -> Result<&Tensor> {
+    fn checked(&self, name: &str, shape: &[Option<usize>]) -> Result<&Tensor<'a>> {
         let tensor = self.get(name)?;
         let same = |(wanted, found): (&Option<usize>, &usize)| wanted.is_none_or(|size| size == *found);
         if tensor.shape.len() == shape.len() && shape.iter().zip(&tensor.shape).all(same) {
@@ -199,7 +207,7 @@ fn metadata(strings: &Object) -> Result<BTreeMap<String, String>> {
 }
 
 /// One entry of the header: the tensor and the range of its bytes.
-fn tensor(name: &str, entry: &Object, payload: &[u8]) -> Result<(Tensor, [usize; 2])> {
+fn tensor<'a>(name: &str, entry: &Object, payload: &'a [u8]) -> Result<(Tensor<'a>, [usize; 2])> {
     let malformed = |reason: String| Error::NotSafetensors(format!("tensor {name}: {reason}"));
     let dtype = match entry.get("dtype") {
         Some(Value::String(text)) => Dtype::NAMES.iter().find(|known| known.0 == text).map(|known| known.1),
@@ -214,8 +222,8 @@ fn tensor(name: &str, entry: &Object, payload: &[u8]) -> Result<(Tensor, [usize;
         return Err(malformed(format!("shape {shape:?} does not fill {} bytes", offsets[1] - offsets[0])));
     }
     let truncated = || Error::Truncated { tensor: name.to_owned(), wanted: offsets[1], found: payload.len() };
-    let bytes = payload.get(offsets[0]..offsets[1]).ok_or_else(truncated)?.to_vec();
-    Ok((Tensor { dtype, shape, bytes }, [offsets[0], offsets[1]]))
+    let bytes = payload.get(offsets[0]..offsets[1]).ok_or_else(truncated)?;
+    Ok((Tensor { dtype, shape, bytes: Cow::Borrowed(bytes) }, [offsets[0], offsets[1]]))
 }
 
 fn sizes(value: Option<&Value>) -> Option<Vec<usize>> {

@@ -78,9 +78,10 @@ fn data_that_cannot_be_judged_is_refused() {
     let sizes = [&setup, &other].map(|setup| format!("{} vertices", setup.template.len() / 3));
     refuses("other", &["cloth is not the model's", &sizes[0], &sizes[1]]);
     let broken = pose_path(&folder.path("data"), 1, 7);
-    let mut file = Tensors::parse(&std::fs::read(&broken).expect("a pose")).expect("tensors");
+    let bytes = std::fs::read(&broken).expect("a pose");
+    let mut file = Tensors::parse(&bytes).expect("tensors");
     let truth = file.tensors.get_mut("truth.positions").expect("a tensor");
-    truth.bytes[8..12].copy_from_slice(&f32::NAN.to_le_bytes());
+    truth.bytes.to_mut()[8..12].copy_from_slice(&f32::NAN.to_le_bytes());
     std::fs::write(&broken, file.to_bytes()).expect("a file written");
     for command in ["evaluate model.safetensors data", "train data -o out.safetensors"] {
         folder.refuses(command, &["001-00007.safetensors", "truth.positions", "NaN", "element 2"]);

@@ -11,8 +11,10 @@ pub fn read(path: &Path) -> Result<Vec<u8>> {
 }
 
 /// Reads a safetensors file, naming the file in errors.
-pub fn tensors(path: &Path) -> Result<Tensors> {
-    Tensors::parse(&read(path)?).map_err(|error| Error::File { path: path.to_owned(), reason: error.to_string() })
+pub fn tensors(path: &Path) -> Result<Tensors<'static>> {
+    let bytes = read(path)?;
+    let parsed = Tensors::parse(&bytes).map(Tensors::into_owned);
+    parsed.map_err(|error| Error::File { path: path.to_owned(), reason: error.to_string() })
 }
 
 /// Writes a whole file or nothing, and the folder it stands in: first beside it, under a name of its own, then moved

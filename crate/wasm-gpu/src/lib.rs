@@ -101,7 +101,7 @@ impl GpuPredictor {
 
     /// Four buffers: positions of the cloth vertices [3·n] and of the drawn vertices [3·d], world, metres; then their
     /// unit normals likewise. Tightly packed, to be used as vertex or storage buffers.
-    #[wasm_bindgen(unchecked_return_type = "[GPUBuffer, GPUBuffer, GPUBuffer, GPUBuffer]")]
+    #[wasm_bindgen(unchecked_return_type = "[object, object, object, object]")]
     pub fn buffers(&self) -> Array {
         let buffers = [self.0.positions(), self.0.drawn_positions(), self.0.normals(), self.0.drawn_normals()];
         buffers.into_iter().map(handle).collect()

@@ -3,6 +3,7 @@
 // On other targets there is no JavaScript.
 #![cfg(target_arch = "wasm32")]
 
+mod info;
 #[cfg(feature = "threads")]
 mod team;
 
@@ -67,6 +68,8 @@ impl Predictor {
     #[wasm_bindgen(constructor)]
     pub fn new(bytes: Vec<u8>, polish: Option<usize>) -> Result<Predictor, js_sys::Error> {
         let model = HostModel::parse(&bytes).map_err(|error| to_js(&error))?;
+        // Its place is taken by what a prediction computes: memory that has grown is never given back.
+        drop(bytes);
         let model = model.polish(polish);
         #[cfg(feature = "threads")]
         let inner = ctsn_core::Predictor::on_threads(model, Level::new(), team::threads());
@@ -109,6 +112,12 @@ impl Predictor {
     /// Triangles of the drawn surface [3·t].
     pub fn surface_triangles(&self) -> Option<Vec<u32>> {
         self.inner.surface().map(|surface| surface.triangles.clone())
+    }
+
+    /// Sizes, cost and origin of the model.
+    #[wasm_bindgen(unchecked_return_type = "object")]
+    pub fn info(&self) -> JsValue {
+        serde_wasm_bindgen::to_value(&info::Info::of(&self.inner)).unwrap_or_default()
     }
 
     /// Cloth vertices.

@@ -9,7 +9,7 @@ async function dress(studio: Studio, { name, poses }: Golden, backend: BackendCh
   const model = await loadModel(address(name), { backend, device: deviceOf(studio.renderer) });
   const character = characterOf(model.joints, poses[0]!);
   const material = new THREE.MeshStandardNodeMaterial({ color: 0x3a86ff, side: THREE.DoubleSide }) as THREE.Material;
-  const cloth = new Cloth(model, character, material, renderer);
+  const cloth = new Cloth(model, character, material, { renderer });
   cloth.castShadow = cloth.receiveShadow = true;
   studio.scene.add(cloth);
   return { model, character, cloth };
@@ -225,7 +225,7 @@ export async function lostRenderer(golden: Golden) {
   cloth.dispose();
   const next = await Studio.open();
   await model.setBackend('webgpu', deviceOf(next.renderer));
-  const again = new Cloth(model, character, cloth.material, next.renderer);
+  const again = new Cloth(model, character, cloth.material, { renderer: next.renderer });
   next.scene.add(again);
   next.lookAt(again);
   await settle(again);

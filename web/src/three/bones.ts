@@ -1,5 +1,6 @@
 import { PropertyBinding, Skeleton, type Object3D, type SkinnedMesh } from 'three';
 import { CtsnError } from '../error.js';
+import { readName } from './names.js';
 
 /**
  * Where a cloth finds its bones: a skeleton, a skinned mesh, or the object above a character of several skinned meshes.
@@ -7,22 +8,65 @@ import { CtsnError } from '../error.js';
 export type Character = Object3D | Skeleton;
 
 /**
- * The objects that carry the model's joints, in the model's order. They are found by name, spelled as in the glTF file
- * or as three's loader cleans it.
+ * Which bone a joint of the model is: by name, `{ Hips: 'pelvis' }`, or by a function that answers with a name or the
+ * bone itself. Joints about which it says nothing are found by their own names.
  */
-export function findBones(character: Character, joints: readonly string[]): Object3D[] {
+export type BoneMap =
+  | Readonly<Record<string, string>>
+  | ((joint: string) => string | Object3D | null | undefined);
+
+/**
+ * The objects that carry the model's joints, in the model's order. What `map` does not say is found by name, spelled as
+ * in the glTF file, as three's loader cleans it, or as another family of rigs calls the same joint.
+ */
+export function findBones(character: Character, joints: readonly string[], map: BoneMap = {}): Object3D[] {
   const named = new Map<string, Object3D>();
+  const read = new Map<string, Object3D>();
   for (const object of candidates(character)) {
     // three's GLTFLoader keeps the file's spelling in userData and cleans `name`.
     for (const name of [object.userData['name'] as unknown, object.name]) {
-      if (typeof name === 'string' && !named.has(name)) named.set(name, object);
+      if (typeof name !== 'string') continue;
+      if (!named.has(name)) named.set(name, object);
+      if (!read.has(readName(name))) read.set(readName(name), object);
     }
   }
-  return joints.map((joint) => {
-    const bone = named.get(joint) ?? named.get(PropertyBinding.sanitizeNodeName(joint));
-    if (!bone) throw new CtsnError('missing_joint', `the character has no bone "${joint}"`, { joint });
-    return bone;
+  const find = (name: string) => named.get(name) ?? named.get(PropertyBinding.sanitizeNodeName(name));
+  const bones = joints.map((joint) => {
+    const told = ask(map, joint);
+    if (told && typeof told !== 'string') return told;
+    const bone = told ? find(told) : (find(joint) ?? read.get(readName(joint)));
+    if (bone) return bone;
+    const sought = told ? `bone "${told}", which the map names for joint "${joint}"` : `bone "${joint}"`;
+    throw new CtsnError('missing_joint', `the character has no ${sought}: ${listNames(named)}`, { joint });
   });
+  const twice = bones.findIndex((bone, at) => bones.indexOf(bone) !== at);
+  if (twice < 0) return bones;
+  const [joint, other] = [joints[twice]!, joints[bones.indexOf(bones[twice]!)]!];
+  const both = `the bone "${bones[twice]!.name}" would be joint "${joint}" and joint "${other}"`;
+  throw new CtsnError('missing_joint', `${both}: say by { bones } which is which`, { joint });
+}
+
+/** What a map says of a joint. */
+export function ask(map: BoneMap = {}, joint: string): string | Object3D | null | undefined {
+  if (typeof map === 'function') return map(joint);
+  return Object.hasOwn(map, joint) ? map[joint] : undefined;
+}
+
+function listNames(named: ReadonlyMap<string, Object3D>): string {
+  const bones = [...named].filter(([, object]) => 'isBone' in object).map(([name]) => name);
+  const names = bones.slice(0, 6).map((name) => `"${name}"`).join(', ');
+  return names ? `its bones are ${names}${bones.length > 6 ? ', …' : ''}` : 'no bones are below it';
+}
+
+/** The skeletons that move the meshes of a character, each once. */
+export function skeletonsOf(character: Character): Set<Skeleton> {
+  if (character instanceof Skeleton) return new Set([character]);
+  const found = new Set<Skeleton>();
+  character.traverse((object) => {
+    const { skeleton } = object as Partial<SkinnedMesh>;
+    if (skeleton) found.add(skeleton);
+  });
+  return found;
 }
 
 function candidates(character: Character): Object3D[] {

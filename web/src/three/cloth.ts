@@ -1,14 +1,18 @@
-import { Matrix4, Mesh, type BufferGeometry, type Material, type Object3D } from 'three';
+import { Mesh, type BufferGeometry, type Material, type Object3D } from 'three';
 import type { Backend } from '../backend.js';
 import type { ClothBuffers } from '../buffers.js';
-import type { ClothModel, Frame } from '../model.js';
+import type { Frame } from '../frame.js';
+import type { ClothModel } from '../model.js';
 import { Fade, type Quality } from '../quality.js';
-import { findBones, refresh, refreshAbove, topmost, type Character } from './bones.js';
+import { refreshAbove, type Character } from './bones.js';
 import { boundPose, reachOf } from './bounds.js';
-import { splitPlacement } from './placement.js';
+import { Dressing, Twin } from './dressing.js';
+import { checked, type AnyClothModel, type ClothOptions } from './options.js';
 import { createGeometry, showPrediction } from './surface.js';
 import { ZeroCopy } from './zero-copy.js';
 
+/** How far cloth may be from the joints, metres, as long as none was seen. */
+const REACH = 1;
 /**
  * Predictions on their way back from the GPU, at most. With one, every second animation frame would show nothing new.
  */
@@ -18,32 +22,23 @@ const IN_FLIGHT = 2;
  * A garment in a three.js scene. Add it anywhere in the scene and call `update()` once per animation frame, after the
  * animation: it reads the character's bones and follows them at whatever place and scale the character has.
  *
- * Where the model computes on the GPU and `renderer` is a WebGPURenderer on the same device, the renderer draws from
- * the buffers that the prediction is written to. With any other renderer the prediction is read back and shows a frame
- * late.
+ * Where the model computes on the GPU and `options.renderer` is a WebGPURenderer on the same device, the renderer draws
+ * from the buffers that the prediction is written to. With any other renderer the prediction is read back and shows a
+ * frame late.
  *
  * Several cloths may share one model. `dispose()` frees the geometry; whoever made the model and the material frees
  * those.
  */
 export class Cloth<M extends Material | Material[] = Material> extends Mesh<BufferGeometry, M> {
   override readonly type: string = 'Cloth';
-  /** The network that moves this cloth. */
-  readonly model: ClothModel;
   /**
    * How much of the network it takes. It may change at any time, and blends. `auto`: what a `Wardrobe` says; without
    * one, `full`.
    */
   quality: Quality | 'auto' = 'full';
-  /** The objects whose world matrices make the pose, in the order of `model.joints`. */
-  readonly bones: readonly Object3D[];
-
-  readonly #character: Character;
   readonly #renderer: object | undefined;
-  readonly #tops: readonly Object3D[];
-  readonly #rootInverseBind: Float32Array;
-  readonly #pose: Float32Array;
-  readonly #placement = /* @__PURE__ */ new Matrix4();
-  readonly #zeroCopy: ZeroCopy;
+  #dressing: Dressing;
+  #zeroCopy: ZeroCopy;
   readonly #fade = new Fade('full');
   /** How the next prediction is asked for: one object for all, so that none is made. */
   readonly #options = { fade: this.#fade };
@@ -59,24 +54,48 @@ export class Cloth<M extends Material | Material[] = Material> extends Mesh<Buff
   #confidence = 1;
   /** What was refused between two updates. */
   #failure: unknown;
-  /** Distance of the cloth from the joints, metres; measured when bounds of unknown positions are wanted. */
+  /** Distance of the cloth from the joints, metres; measured on the first prediction, for bounds of unknown ones. */
   #reach: number | undefined;
 
-  constructor(model: ClothModel, character: Character, material: M, renderer?: object) {
-    super(createGeometry(model), material);
-    this.model = model;
-    this.bones = findBones(character, model.joints);
-    this.#character = character;
-    this.#renderer = renderer;
-    this.#tops = topmost(this.bones);
-    this.#rootInverseBind = model.inverseBind.slice(12 * model.rootIndex, 12 * model.rootIndex + 12);
-    this.#pose = new Float32Array(16 * model.joints.length);
-    this.#zeroCopy = new ZeroCopy(model, this.geometry, renderer);
+  /**
+   * Dresses `character`, which may be a skeleton, a skinned mesh, or the object above several. Throws a `CtsnError`
+   * where an argument is of the wrong kind, a joint has no bone, or the character is not the one of the model.
+   */
+  constructor(model: AnyClothModel, character: Character, material: M, options: ClothOptions = {}) {
+    super(createGeometry(checked(model, character, material, options)), material);
+    this.#dressing = options instanceof Twin ? options.dressing : Dressing.of(model, character, options);
+    this.#renderer = options.renderer;
+    this.#zeroCopy = new ZeroCopy(model, this.geometry, options.renderer);
     // The matrix follows from the bones; this object's own position, rotation and scale are ignored.
     this.matrixAutoUpdate = false;
-    // The first prediction is there at once, wherever later ones are computed.
-    if (this.#read()) this.#show(model.predictCloth(this.#pose, this.#atOnce));
-    this.#place();
+    this.#begin();
+  }
+
+  /** The network that moves this cloth. */
+  get model(): AnyClothModel {
+    return this.#dressing.model;
+  }
+
+  /** The objects whose world matrices make the pose, in the order of `model.joints`. */
+  get bones(): readonly Object3D[] {
+    return this.#dressing.bones;
+  }
+
+  /**
+   * Puts another garment of the same character in the place of this one, at once: the object, its material and its
+   * place in the scene stay. The model before is not disposed of. What throws in the constructor throws here, and the
+   * cloth stays as it was.
+   */
+  setModel(model: AnyClothModel, { fit }: Pick<ClothOptions, 'fit'> = {}): this {
+    const dressing = this.#dressing.with(checked(model, this, this.material, {}), fit);
+    const geometry = createGeometry(model);
+    this.#leave();
+    this.geometry = geometry;
+    this.#dressing = dressing;
+    this.#zeroCopy = new ZeroCopy(model, geometry, this.#renderer);
+    this.#reach = undefined;
+    this.#begin();
+    return this;
   }
 
   /** Updates over which a change of `quality` is spread: a dozen, if nothing else is said. 0: the next shows it. */
@@ -132,7 +151,7 @@ export class Cloth<M extends Material | Material[] = Material> extends Mesh<Buff
     this.#place();
     if (!there) return undefined;
     this.#bound();
-    return this.#pose;
+    return this.#dressing.pose;
   }
 
   /**
@@ -150,10 +169,26 @@ export class Cloth<M extends Material | Material[] = Material> extends Mesh<Buff
     return this;
   }
 
+  /**
+   * The first prediction is there at once, wherever later ones are computed, unless that is a worker. What is on its
+   * way is void.
+   */
+  #begin(): void {
+    this.#shown = ++this.#asked;
+    if (this.#read()) this.#receive(this.model.predictCloth(this.#dressing.pose, this.#atOnce));
+    this.#place();
+  }
+
+  /** Lets go of what belongs to the model. */
+  #leave(): void {
+    this.geometry.dispose();
+    this.#fade.dispose();
+    this.#zeroCopy.dispose();
+  }
+
   /** Reads the bones; false for a character scaled to nothing. */
   #read(): boolean {
-    refresh(this.#tops);
-    return splitPlacement(this.bones, this.model.rootIndex, this.#rootInverseBind, this.#pose, this.#placement);
+    return this.#dressing.read(this);
   }
 
   #ask(quality: Quality, every: number): void {
@@ -168,21 +203,23 @@ export class Cloth<M extends Material | Material[] = Material> extends Mesh<Buff
     const buffers = this.#zeroCopy.ready();
     if (buffers) return this.#draw(buffers);
     // Until there are buffers to draw from, the CPU predicts: it is never late.
-    if (this.#zeroCopy.shares()) {
-      return this.#show(this.model.predictCloth(this.#pose, this.#atOnce));
-    }
+    if (this.#zeroCopy.shares()) return this.#receive(this.model.predictCloth(this.#dressing.pose, this.#atOnce));
     if (this.#inFlight >= IN_FLIGHT) {
       this.#skipped = true;
       return;
     }
-    const answer = this.model.predictCloth(this.#pose, this.#options);
+    this.#receive(this.model.predictCloth(this.#dressing.pose, this.#options));
+  }
+
+  #receive(answer: Frame | Promise<Frame>): void {
     if ('output' in answer) this.#show(answer);
     else this.#await(answer);
   }
 
   #draw(buffers: ClothBuffers): void {
-    const { model } = this;
-    const answer = model.predictCloth(this.#pose, { ...this.#options, output: 'gpu', buffers });
+    // Only models of this page have buffers.
+    const model = this.model as ClothModel;
+    const answer = model.predictCloth(this.#dressing.pose, { ...this.#options, output: 'gpu', buffers });
     if (answer.output === 'gpu') {
       this.#shown = ++this.#asked;
       this.#bound();
@@ -196,8 +233,7 @@ export class Cloth<M extends Material | Material[] = Material> extends Mesh<Buff
   }
 
   #bound(): void {
-    this.#reach ??= reachOf(this.model.predictCloth(this.#pose, { backend: 'cpu' }).positions, this.#pose);
-    boundPose(this.#pose, this.#reach, this.geometry);
+    boundPose(this.#dressing.pose, this.#reach ?? REACH, this.geometry);
   }
 
   /** Shows a late answer when it comes, unless a later one is shown, and then predicts what was skipped meanwhile. */
@@ -226,30 +262,39 @@ export class Cloth<M extends Material | Material[] = Material> extends Mesh<Buff
     this.#shown = turn;
     this.#confidence = frame.confidence;
     showPrediction(this.geometry, frame, this.model.surface?.vertex);
+    this.#reach ??= reachOf(frame.positions, this.#dressing.pose);
+    if ('recycle' in this.model) this.model.recycle(frame);
   }
 
   /** Makes `matrixWorld` the placement, whatever stands above this object. */
   #place(): void {
-    this.matrix.copy(this.#placement);
+    this.matrix.copy(this.#dressing.placement);
     if (this.parent) {
       refreshAbove(this.parent);
-      this.matrix.copy(this.parent.matrixWorld).invert().multiply(this.#placement);
+      this.matrix.copy(this.parent.matrixWorld).invert().multiply(this.#dressing.placement);
     }
-    this.matrixWorld.copy(this.#placement);
+    this.matrixWorld.copy(this.#dressing.placement);
     this.matrixWorldNeedsUpdate = true;
   }
 
-  /** Another cloth on the same character, with the same model and material. */
+  /**
+   * Another cloth with the same model and material, on the same character; or, where the character is cloned around it,
+   * as `SkeletonUtils.clone` does, on the clone.
+   */
   override clone(): this {
-    const { model, material } = this;
-    return new Cloth(model, this.#character, material, this.#renderer) as this;
+    const { model, material, bones } = this;
+    const twin = new Cloth(model, bones[0]!, material, new Twin(this.#renderer, this.#dressing.twin(this)));
+    const { geometry } = twin;
+    twin.copy(this);
+    twin.geometry = geometry;
+    twin.quality = this.quality;
+    twin.blend = this.blend;
+    return twin as this;
   }
 
   /** Frees the geometry, and the buffers on the GPU. */
   override dispose(): void {
-    this.geometry.dispose();
-    this.#fade.dispose();
-    this.#zeroCopy.dispose();
+    this.#leave();
     // Object3D has a dispose() of its own since three r187.
     super.dispose?.();
   }

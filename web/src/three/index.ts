@@ -2,4 +2,6 @@ export { Cloth } from './cloth.js';
 export { Wardrobe } from './wardrobe.js';
 export { deviceOf } from './renderer.js';
 export { ClothLoader } from './loader.js';
-export type { Character } from './bones.js';
+export type { BoneMap, Character } from './bones.js';
+export type { Fit } from './fit.js';
+export type { AnyClothModel, ClothOptions } from './options.js';

@@ -2,13 +2,18 @@ import { Loader } from 'three';
 import type { BackendChoice } from '../backend.js';
 import type { Progress } from '../download.js';
 import { loadModel, type WasmSources } from '../load.js';
-import type { ClothModel } from '../model.js';
+import type { ClothModel, CpuClothModel } from '../model.js';
+import type { GPUDevice } from '../webgpu.js';
 
-/** `loadModel` as a three.js loader, with its path, loading manager, request headers and credentials. */
-export class ClothLoader extends Loader<ClothModel> {
+/**
+ * `loadModel` as a three.js loader, with its path, loading manager, request headers and credentials. Its models answer
+ * at once, unless `setBackend` lets them compute on a GPU.
+ */
+export class ClothLoader<M extends ClothModel = CpuClothModel> extends Loader<M> {
   #wasm: WasmSources = {};
   #backend: BackendChoice = 'cpu';
   #device: GPUDevice | undefined;
+  #abort = new AbortController();
 
   /** Where the WebAssembly modules come from, as for `loadModel`. */
   setWasm(sources: WasmSources): this {
@@ -16,16 +21,18 @@ export class ClothLoader extends Loader<ClothModel> {
     return this;
   }
 
-  /** Where models compute, as for `loadModel`. */
-  setBackend(choice: BackendChoice, device?: GPUDevice): this {
+  /** Where models compute, as for `loadModel`. Answers with this loader, typed by the models that it loads then. */
+  setBackend(choice: 'cpu'): ClothLoader;
+  setBackend(choice: BackendChoice, device?: GPUDevice): ClothLoader<ClothModel>;
+  setBackend(choice: BackendChoice, device?: GPUDevice): ClothLoader | ClothLoader<ClothModel> {
     this.#backend = choice;
     this.#device = device;
-    return this;
+    return this as ClothLoader<ClothModel>;
   }
 
   override load(
     url: string,
-    onLoad: (model: ClothModel) => void,
+    onLoad: (model: M) => void,
     onProgress?: (event: ProgressEvent) => void,
     onError?: (error: unknown) => void,
   ): void {
@@ -36,21 +43,43 @@ export class ClothLoader extends Loader<ClothModel> {
       backend: this.#backend,
       device: this.#device,
       request: { headers: this.requestHeader, credentials } satisfies RequestInit,
+      signal: this.#signal(),
       onProgress: (progress: Progress) => onProgress?.(toEvent(progress)),
     };
     this.manager.itemStart(address);
-    loadModel(address, options).then(
-      (model) => {
-        onLoad(model);
-        this.manager.itemEnd(address);
-      },
-      (error: unknown) => {
+    const end = (work: () => void) => {
+      try {
+        work();
+      } catch (error) {
+        // As with three's own loaders: also what `onLoad` throws.
         if (onError) onError(error);
         else console.error(error);
         this.manager.itemError(address);
+      } finally {
         this.manager.itemEnd(address);
-      },
+      }
+    };
+    loadModel(address, options).then(
+      (model) => end(() => onLoad(model as M)),
+      (error: unknown) =>
+        end(() => {
+          throw error;
+        }),
     );
+  }
+
+  /** Ends every load that is on its way; each fails with an `AbortError`. */
+  override abort(): this {
+    this.#abort.abort();
+    this.#abort = new AbortController();
+    return this;
+  }
+
+  /** Aborted by this loader or by its manager, which has a signal since three r179. */
+  #signal(): AbortSignal {
+    const { abortController } = this.manager as { abortController?: AbortController };
+    const { signal } = this.#abort;
+    return abortController ? AbortSignal.any([signal, abortController.signal]) : signal;
   }
 }
 

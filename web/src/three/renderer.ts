@@ -4,13 +4,14 @@
  * put there. Tested at both ends of the peer range.
  */
 import { DynamicDrawUsage, StaticDrawUsage, type BufferAttribute } from 'three';
+import type { GPUBuffer, GPUDevice } from '../webgpu.js';
 
 /** TypeScript's library knows the type of these bits, not their names. */
 declare const GPUBufferUsage: Readonly<Record<'VERTEX' | 'COPY_DST' | 'COPY_SRC', number>>;
 
 interface WebGPUBackend {
   readonly isWebGPUBackend: true;
-  readonly device: GPUDevice | undefined;
+  readonly device: GPUDevice | null | undefined;
   get(attribute: BufferAttribute): { buffer?: GPUBuffer };
 }
 
@@ -24,7 +25,8 @@ function backendOf(renderer: object | undefined): WebGPUBackend | undefined {
  * WebGL.
  */
 export function deviceOf(renderer: object | undefined): GPUDevice | undefined {
-  return backendOf(renderer)?.device;
+  // Before `init()` three has null there.
+  return backendOf(renderer)?.device ?? undefined;
 }
 
 /** Lets the renderer draw an attribute from `buffer`. The attribute's array is no longer uploaded. */

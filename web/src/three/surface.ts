@@ -1,9 +1,10 @@
 import { Box3, BufferAttribute, BufferGeometry, DynamicDrawUsage, Sphere } from 'three';
-import type { ClothModel, Frame } from '../model.js';
+import type { Frame } from '../frame.js';
 import { boundPositions } from './bounds.js';
+import type { AnyClothModel } from './options.js';
 
 /** The drawn surface of a model. Its positions, normals and bounds are empty until `showPrediction` fills them. */
-export function createGeometry({ surface, triangles, vertexCount }: ClothModel): BufferGeometry {
+export function createGeometry({ surface, triangles, vertexCount }: AnyClothModel): BufferGeometry {
   const count = surface ? surface.vertex.length : vertexCount;
   const geometry = new BufferGeometry();
   geometry.setIndex(new BufferAttribute(surface ? surface.triangles : triangles, 1));

@@ -1,8 +1,8 @@
 import { Frustum, Matrix4, Sphere, Vector3, type Camera } from 'three';
-import type { ClothModel } from '../model.js';
 import type { Quality } from '../quality.js';
 import { refreshAbove } from './bones.js';
 import type { Cloth } from './cloth.js';
+import type { AnyClothModel } from './options.js';
 
 /** How many predictions a cloth may go without its mesh stream being computed. */
 const RHYTHMS = [1, 2, 4];
@@ -37,7 +37,7 @@ export class Wardrobe {
   budget: number;
 
   readonly #places: Place[] = [];
-  readonly #costs = new Map<ClothModel, Cost>();
+  readonly #costs = new Map<AnyClothModel, Cost>();
   readonly #frustum = /* @__PURE__ */ new Frustum();
   readonly #view = /* @__PURE__ */ new Matrix4();
   readonly #sphere = /* @__PURE__ */ new Sphere();

@@ -1,6 +1,7 @@
 import type { BufferAttribute, BufferGeometry } from 'three';
 import type { ClothBuffers } from '../buffers.js';
 import type { ClothModel } from '../model.js';
+import type { AnyClothModel } from './options.js';
 import { deviceOf, drawFromArray, drawFromBuffer } from './renderer.js';
 
 /**
@@ -8,7 +9,7 @@ import { deviceOf, drawFromArray, drawFromBuffer } from './renderer.js';
  * renderer's device, and given up when it no longer does.
  */
 export class ZeroCopy {
-  readonly #model: ClothModel;
+  readonly #model: AnyClothModel;
   readonly #geometry: BufferGeometry;
   readonly #renderer: object | undefined;
   #buffers: ClothBuffers | undefined;
@@ -16,7 +17,7 @@ export class ZeroCopy {
   #coming: Promise<void> | undefined;
   #disposed = false;
 
-  constructor(model: ClothModel, geometry: BufferGeometry, renderer: object | undefined) {
+  constructor(model: AnyClothModel, geometry: BufferGeometry, renderer: object | undefined) {
     this.#model = model;
     this.#geometry = geometry;
     this.#renderer = renderer;
@@ -64,7 +65,8 @@ export class ZeroCopy {
 
   async #ask(): Promise<void> {
     // Without buffers the cloth is drawn from arrays, and the model tells why.
-    const buffers = await this.#model.createBuffers().catch(() => undefined);
+    const model = this.#model as ClothModel;
+    const buffers = await model.createBuffers().catch(() => undefined);
     if (this.#disposed) buffers?.dispose();
     else this.#buffers = buffers;
   }

@@ -16,7 +16,7 @@ pub enum Storage {
 }
 
 pub(super) struct Writer {
-    file: Tensors,
+    file: Tensors<'static>,
     storage: Storage,
 }
 

@@ -1,7 +1,7 @@
 //! Mesh-based residual stream: graph transformer over the reference mesh, vertex MLP, `Δ_M[i] = Σ_j w_ij M_j[i]`.
 //! network.md §3.
 
-use super::{Activations, DeviceModel, LayerActivations, skin};
+use super::{Activations, DeviceModel, Workings, skin};
 use crate::device::Device;
 use crate::model::Layer;
 use crate::operation::{Activation, Attend, Blend, Features, Linear, Space};
@@ -23,12 +23,13 @@ pub(crate) fn mesh<D: Device>(device: &mut D, model: &DeviceModel<D>, a: &mut Ac
     device.run(features.into());
     for (l, layer) in model.layers.iter().enumerate() {
         let (before, after) = a.layers.split_at_mut(l);
-        let h = before.last().map_or(&a.nodes, |layer| &layer.output);
-        graph_layer(device, (&model.graph, model.sizes.heads), layer, [h, &a.potentials], &mut after[0]);
+        let (h, each) = (before.last().unwrap_or(&a.nodes), a.workings.len());
+        let room = (&mut a.workings[l % each], &mut after[0]);
+        graph_layer(device, (&model.graph, model.sizes.heads), layer, [h, &a.potentials], room);
     }
     for (i, layer) in model.vertex_mlp.iter().enumerate() {
         let (before, after) = a.vertex_mlp.split_at_mut(i);
-        let x = before.last().or(a.layers.last().map(|layer| &layer.output)).unwrap_or(&a.nodes);
+        let x = before.last().or(a.layers.last()).unwrap_or(&a.nodes);
         let (weight, bias, activation) = (&layer.weight, &layer.bias, Activation::Relu);
         device.run(Linear { x, weight, bias, activation, y: &mut after[0] }.into());
     }
@@ -49,9 +50,8 @@ pub fn graph_layer<D: Device>(
     (graph, heads): (&Graph<D::Indices>, usize),
     layer: &Layer<D::Buffer>,
     [h, potentials]: [&D::Buffer; 2],
-    room: &mut LayerActivations<D::Buffer>,
+    (Workings { projected, attended }, output): (&mut Workings<D::Buffer>, &mut D::Buffer),
 ) {
-    let LayerActivations { projected, attended, output } = room;
     let (weight, bias) = (&layer.project.weight, &layer.project.bias);
     device.run(Linear { x: h, weight, bias, activation: Activation::None, y: &mut *projected }.into());
     let attend = Attend {

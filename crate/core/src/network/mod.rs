@@ -51,8 +51,10 @@ pub struct Activations<B> {
     pub nodes: B,
     /// [V ; T_C] / edge_scale [n, 6].
     pub potentials: B,
-    /// Graph layers.
-    pub layers: Vec<LayerActivations<B>>,
+    /// h of each graph layer [n, F].
+    pub layers: Vec<B>,
+    /// What graph layers compute on their way: one for all of them, which write it in turn, or one for each.
+    pub workings: Vec<Workings<B>>,
     /// Outputs of the vertex-level MLP's layers; the last is w [n, k].
     pub vertex_mlp: Vec<B>,
     /// Δ_M [n, 3].
@@ -81,24 +83,30 @@ pub struct Drawn<B> {
     pub normals: B,
 }
 
-/// Intermediate results of one graph layer.
-pub struct LayerActivations<B> {
+/// What a graph layer computes on its way.
+pub struct Workings<B> {
     /// q | k | v | r [n, 4F].
     pub projected: B,
     /// ĥ [n, F].
     pub attended: B,
-    /// h [n, F].
-    pub output: B,
 }
 
 impl<B> Activations<B> {
     /// Room for every result of `model`; `buffer(stage, length)` makes one, for the stage that computes it.
-    pub fn new(model: &HostModel, mut buffer: impl FnMut(&str, usize) -> B) -> Self {
+    pub fn new(model: &HostModel, buffer: impl FnMut(&str, usize) -> B) -> Self {
+        Self::with_workings(1, model, buffer)
+    }
+
+    /// The same for a device that remembers what every graph layer computed.
+    pub fn keeping(model: &HostModel, buffer: impl FnMut(&str, usize) -> B) -> Self {
+        Self::with_workings(model.layers.len(), model, buffer)
+    }
+
+    fn with_workings(workings: usize, model: &HostModel, mut buffer: impl FnMut(&str, usize) -> B) -> Self {
         let (n, joints, features) = (model.sizes.vertices, model.sizes.joints, model.sizes.features);
-        let layer = |stage: &str, buffer: &mut dyn FnMut(&str, usize) -> B| LayerActivations {
+        let working = |stage: &str, buffer: &mut dyn FnMut(&str, usize) -> B| Workings {
             projected: buffer(stage, n * 4 * features),
             attended: buffer(stage, n * features),
-            output: buffer(stage, n * features),
         };
         Self {
             joints: buffer("body_frame", 12 * joints),
@@ -111,7 +119,8 @@ impl<B> Activations<B> {
             reference: buffer("reference", n * 3),
             nodes: buffer("reference", n * 3),
             potentials: buffer("reference", n * 6),
-            layers: (0..model.layers.len()).map(|l| layer(&format!("layer.{l}"), &mut buffer)).collect(),
+            layers: (0..model.layers.len()).map(|l| buffer(&format!("layer.{l}"), n * features)).collect(),
+            workings: (0..workings).map(|l| working(&format!("layer.{l}"), &mut buffer)).collect(),
             vertex_mlp: model.vertex_mlp.iter().map(|layer| buffer("mesh", n * layer.outputs)).collect(),
             mesh: buffer("mesh", n * 3),
             coarse: buffer("skeleton", n * 3),
@@ -129,7 +138,7 @@ impl<B> Activations<B> {
 
     /// What each stage hands on, under the stage's name.
     pub fn stages(&self) -> Vec<(String, &B)> {
-        let layers = self.layers.iter().enumerate().map(|(l, layer)| (format!("layer.{l}"), &layer.output));
+        let layers = self.layers.iter().enumerate().map(|(l, layer)| (format!("layer.{l}"), layer));
         let mut stages = vec![("body_frame".to_owned(), &self.body_frame)];
         stages.extend(self.embedding.last().map(|embedding| ("embedding".to_owned(), embedding)));
         stages.extend([("skeleton".to_owned(), &self.skeleton), ("reference".to_owned(), &self.reference)]);

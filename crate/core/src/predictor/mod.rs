@@ -59,6 +59,15 @@ impl Predictor {
         &self.model
     }
 
+    /// Bytes that it holds: the model's arrays, and what a prediction computes.
+    pub fn bytes(&self) -> usize {
+        let mut numbers = 0;
+        self.model.map(|values| numbers += values.len(), |_| ());
+        self.model.map(|_| (), |indices| numbers += indices.len());
+        Activations::new(&self.model, |_, length| numbers += length);
+        4 * numbers
+    }
+
     /// Sizes of the network.
     pub fn sizes(&self) -> Sizes {
         self.model.sizes

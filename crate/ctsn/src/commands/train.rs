@@ -174,6 +174,7 @@ impl Training {
         let summary = serde_json::json!({
             "character": setup.description.character,
             "garment": setup.description.garment,
+            "fabric": setup.description.material.name,
             "clips": setup.description.clips,
             "poses": slices.train.len(),
             "mixed": slices.mixed,

@@ -57,7 +57,8 @@ fn a_dataset_that_kept_its_fabric_as_text_says_what_to_do() {
     let folder = tempfile::tempdir().unwrap();
     request(&character, &garment).setup().write(folder.path()).unwrap();
     let path = folder.path().join("setup.safetensors");
-    let mut file = ctsn_core::file::Tensors::parse(&std::fs::read(&path).unwrap()).unwrap();
+    let bytes = std::fs::read(&path).unwrap();
+    let mut file = ctsn_core::file::Tensors::parse(&bytes).unwrap();
     let mut description: serde_json::Value = serde_json::from_str(&file.metadata["setup"]).unwrap();
     assert_eq!(description["material"]["name"], "cotton");
     description["material"] = "cotton: Material { density: 0.2 }".into();

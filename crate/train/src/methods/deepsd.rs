@@ -12,7 +12,7 @@ use crate::training::tape::{Id, IndexId, Tape};
 use crate::training::{layer, mlp};
 use ctsn_core::device::Device;
 use ctsn_core::model::{CLOTH_WEIGHTS, HostModel, Layer, Linear, SKELETON_BASIS, Skinning};
-use ctsn_core::network::{LayerActivations, graph_layer};
+use ctsn_core::network::{Workings, graph_layer};
 use ctsn_core::operation::{self, Activation};
 use ctsn_core::topology::Graph;
 use ctsn_rig::{Mesh, numbers, vertices};
@@ -133,11 +133,11 @@ fn record_graph(
 ) -> Id {
     let mut h = inputs;
     for layer in layers {
-        let [projected, attended, output] =
+        let [projected, attended, mut output] =
             [4 * FEATURES, FEATURES, FEATURES].map(|width| tape.buffer(&vec![0.0; n * width]));
-        let mut room = LayerActivations { projected, attended, output };
-        graph_layer(tape, (graph, HEADS), layer, [&h, potentials], &mut room);
-        h = room.output;
+        let room = (&mut Workings { projected, attended }, &mut output);
+        graph_layer(tape, (graph, HEADS), layer, [&h, potentials], room);
+        h = output;
     }
     h
 }

@@ -28,7 +28,7 @@ impl Recording {
         // Samples are what the range is made of, and poses mixed of them hardly leave it.
         let [skeleton_share, mesh_share] = [0; 2].map(|_| tape.buffer(&[1.0]));
         let shared = tape.seal(&learning.iter().map(|(_, id)| id).collect::<Vec<_>>());
-        let mut activations = Activations::new(model, |_, length| tape.buffer(&vec![0.0; length]));
+        let mut activations = Activations::keeping(model, |_, length| tape.buffer(&vec![0.0; length]));
         (activations.skeleton_share, activations.mesh_share) = (skeleton_share, mesh_share);
         forward(&mut tape, &recorded, streams, Space::Body, &mut activations);
         let coarse = (variant.skeleton && streams == Streams::Both).then(|| {

@@ -1,0 +1,86 @@
+import { download, type DownloadOptions, type Progress } from './download.js';
+
+/** By address: files on their way, and files fetched ahead that nobody has taken yet. */
+const arrivals = new Map<string, Arrival>();
+
+/** A file that is asked for once, however many want it. */
+class Arrival {
+  readonly #address: string;
+  readonly #bytes: Promise<Uint8Array>;
+  readonly #listeners = new Set<{ hear: (progress: Progress) => void }>();
+  readonly #request = new AbortController();
+  /** How many wait for it. */
+  #waiting = 0;
+  /** Whether it is kept although nobody waits. */
+  #kept = false;
+
+  private constructor(address: string) {
+    this.#address = address;
+    const onProgress = (progress: Progress) => this.#listeners.forEach(({ hear }) => hear(progress));
+    this.#bytes = download(address, { onProgress, request: { signal: this.#request.signal } });
+    // A failure is no file to be kept; whoever waits is told.
+    this.#bytes.catch(() => this.#forget());
+  }
+
+  static of(address: string): Arrival {
+    let arrival = arrivals.get(address);
+    if (!arrival) arrivals.set(address, (arrival = new Arrival(address)));
+    return arrival;
+  }
+
+  /** The file [bytes]; `keep` it for the next who wants it. When the last who waits gives up, so does the request. */
+  async wait(keep: boolean, { onProgress, signal }: DownloadOptions): Promise<Uint8Array> {
+    this.#waiting++;
+    // An object of its own: one function may listen for several loads.
+    const listener = { hear: onProgress ?? (() => undefined) };
+    this.#listeners.add(listener);
+    try {
+      const bytes = await until(signal, this.#bytes);
+      this.#kept = keep;
+      return bytes;
+    } finally {
+      this.#listeners.delete(listener);
+      if (--this.#waiting === 0 && !this.#kept) {
+        this.#forget();
+        this.#request.abort();
+      }
+    }
+  }
+
+  #forget(): void {
+    if (arrivals.get(this.#address) === this) arrivals.delete(this.#address);
+  }
+}
+
+/**
+ * Fetches a file [bytes]. Those who want the same one at the same time share one request, unless they say how to ask
+ * for it; what was fetched ahead is taken.
+ */
+export async function fetchFile(source: string | URL, options: DownloadOptions): Promise<Uint8Array> {
+  const { signal, request } = options;
+  signal?.throwIfAborted();
+  if (!request) return Arrival.of(String(source)).wait(false, options);
+  return download(source, signal ? { ...options, request: { ...request, signal } } : options);
+}
+
+/** Fetches a file ahead. It is kept until somebody wants it. */
+export async function fetchAhead(source: string | URL, options: DownloadOptions): Promise<void> {
+  options.signal?.throwIfAborted();
+  await Arrival.of(String(source)).wait(true, options);
+}
+
+/** What comes of `work`, or the reason of `signal` where that is aborted first. */
+export async function until<T>(signal: AbortSignal | undefined, work: Promise<T>): Promise<T> {
+  if (!signal) return work;
+  let abort!: () => void;
+  const aborted = new Promise<never>((_, reject) => {
+    abort = () => reject(signal.reason as Error);
+    if (signal.aborted) abort();
+    signal.addEventListener('abort', abort);
+  });
+  try {
+    return await Promise.race([work, aborted]);
+  } finally {
+    signal.removeEventListener('abort', abort);
+  }
+}

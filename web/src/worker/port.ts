@@ -1,0 +1,82 @@
+import type { Progress } from '../download.js';
+import { CtsnError } from '../error.js';
+import type { Answer, Refusal, Request } from './protocol.js';
+
+/** Who waits for an answer. */
+interface Waiting {
+  resolve: (answer: Answer) => void;
+  reject: (error: unknown) => void;
+  onProgress?: ((progress: Progress) => void) | undefined;
+}
+
+/** The bundler must see this very expression to know the worker. */
+const newWorker = () => new Worker(new URL('./serve.js', import.meta.url), { type: 'module', name: 'ctsn' });
+
+const address = () => String(new URL('./serve.js', import.meta.url));
+
+/** What a call asks for, without its number. */
+type Question = Request extends infer Each ? (Each extends Request ? Omit<Each, 'call'> : never) : never;
+
+/** The page's end of one worker. */
+export class Port {
+  readonly #worker = newWorker();
+  readonly #waiting = new Map<number, Waiting>();
+  #calls = 0;
+  #broken: CtsnError | undefined;
+
+  constructor() {
+    this.#worker.onmessage = ({ data }: MessageEvent<Answer>) => this.#settle(data);
+    this.#worker.onerror = (event) => {
+      event.preventDefault();
+      const cure = 'Vite before 8 moves it away: optimizeDeps: { exclude: ["ctsn"] }';
+      this.#break(new CtsnError('worker', `the worker ${address()} stopped: ${event.message || 'it does not load'}. ${cure}`));
+    };
+  }
+
+  /** True once the worker has stopped. */
+  get broken(): boolean {
+    return this.#broken !== undefined;
+  }
+
+  /** Asks, and answers when the worker does. `begun` hears the number of the call. */
+  ask<Wanted extends Answer>(
+    question: Question,
+    transfer: Transferable[],
+    onProgress?: (progress: Progress) => void,
+    begun?: (call: number) => void,
+  ): Promise<Wanted> {
+    if (this.#broken) return Promise.reject(this.#broken);
+    const call = ++this.#calls;
+    return new Promise<Wanted>((resolve, reject) => {
+      this.#waiting.set(call, { resolve: resolve as (answer: Answer) => void, reject, onProgress });
+      this.#worker.postMessage({ ...question, call }, { transfer });
+      begun?.(call);
+    });
+  }
+
+  /** Says something that needs no answer. */
+  tell(request: Request): void {
+    this.#worker.postMessage(request);
+  }
+
+  #settle(answer: Answer): void {
+    const waiting = this.#waiting.get(answer.call);
+    if (!waiting) return;
+    if ('progress' in answer) return waiting.onProgress?.(answer.progress);
+    this.#waiting.delete(answer.call);
+    if ('refusal' in answer) waiting.reject(revive(answer.refusal));
+    else waiting.resolve(answer);
+  }
+
+  #break(error: CtsnError): void {
+    this.#broken = error;
+    for (const { reject } of this.#waiting.values()) reject(error);
+    this.#waiting.clear();
+    this.#worker.terminate();
+  }
+}
+
+function revive({ code, name, message, status, joint }: Refusal): Error {
+  if (!code) return Object.assign(new Error(message), { name });
+  return new CtsnError(code, message, { ...(status !== undefined && { status }), ...(joint !== undefined && { joint }) });
+}
