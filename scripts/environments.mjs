@@ -1,10 +1,11 @@
 // Where the package is tried: pages of examples/, and the same ones with other releases of their tools.
-
 import { readFileSync } from 'node:fs';
 import { at } from './step.mjs';
 
 /** The line that Vite before 8 needs, or the copy in JavaScript does. */
 const told = "export default { optimizeDeps: { exclude: ['ctsn'] } };\n";
+/** What it needs for `ctsn/worker`, whose worker is a file of its own that has chunks. */
+const toldOfWorkers = "export default { optimizeDeps: { exclude: ['ctsn'] }, worker: { format: 'es' } };\n";
 /** A page that does not say where the modules are. */
 const unaware = readFileSync(at('examples', 'vite', 'main.js'), 'utf8');
 
@@ -29,7 +30,13 @@ export const environments = {
   next: { dev: true, start: true },
   'react-three-fiber': { dev: true, build: 'dist' },
   worker: { dev: true, build: 'dist' },
-  'worker-vite-7': { folder: 'examples/worker', packages: ['vite@7.3.8'], dev: true, build: 'dist' },
+  'worker-vite-7-told': {
+    folder: 'examples/worker',
+    packages: ['vite@7.3.8'],
+    files: { 'vite.config.js': toldOfWorkers },
+    dev: true,
+    build: 'dist',
+  },
   node: { node: true },
   'types-5.6': { folder: 'tests/types', packages: ['typescript@5.6.3'], types: true },
   'types-5.9': { folder: 'tests/types', packages: ['typescript@5.9.3'], types: true },

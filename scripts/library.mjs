@@ -90,7 +90,12 @@ async function bind({ package: crate, glue: bound, name, features: { folder, opt
   say(`binding and optimising ${name}_bg.wasm`);
   mkdirSync(glue, { recursive: true });
   await need('cargo', ['run', '--quiet', ...bindgen, '--', compiled, `${folder}/glue`, bound]);
-  if (name === bound) for (const file of [`${bound}.js`, `${bound}.d.ts`]) copyFileSync(`${folder}/glue/${file}`, `${glue}/${file}`);
+  if (name === bound) {
+    copyFileSync(`${folder}/glue/${bound}.js`, `${glue}/${bound}.js`);
+    // Pages may check our declarations by a library of types that has no `Symbol.dispose`.
+    const types = readFileSync(`${folder}/glue/${bound}.d.ts`, 'utf8');
+    writeFileSync(`${glue}/${bound}.d.ts`, types.replace(/^ *\[Symbol\.dispose\].*\n/gm, ''));
+  }
   await need('wasm-opt', [...optimise, ...optimiser, `${folder}/glue/${bound}_bg.wasm`, '-o', `${module}.optimised`]);
   renameSync(`${module}.optimised`, module);
   writeFileSync(stamp, digest);
@@ -103,7 +108,7 @@ async function bind({ package: crate, glue: bound, name, features: { folder, opt
 function inline() {
   const base64 = readFileSync(`${glue}/ctsn_bg.wasm`, 'base64');
   writeFileSync(`${glue}/inline.js`, `export const bytes = Uint8Array.from(atob('${base64}'), (letter) => letter.charCodeAt(0));\n`);
-  writeFileSync(`${glue}/inline.d.ts`, '/** ctsn_bg.wasm. */\nexport const bytes: Uint8Array<ArrayBuffer>;\n');
+  writeFileSync(`${glue}/inline.d.ts`, '/** ctsn_bg.wasm. */\nexport const bytes: BufferSource;\n');
 }
 
 /**
