@@ -10,6 +10,9 @@ await main(async () => {
     ['cargo', 'clippy', '--package', 'ctsn-wasm', '--package', 'ctsn-wasm-gpu', '--profile', 'wasm', '--target', 'wasm32-unknown-unknown', '--', '--deny', 'warnings'],
     ['tsc', '-p', at('web', 'tests')],
     ['tsc', '-p', at('www')],
+    ['publint', at('web'), '--strict'],
+    // The package is ESM alone: CommonJS imports it, or requires it on Node from 20.19 on.
+    ['attw', '--pack', at('web'), '--profile', 'esm-only', '--quiet'],
   ];
   const failed = [];
   for (const [program, ...args] of checks) {

@@ -92,9 +92,9 @@ async function bind({ package: crate, glue: bound, name, features: { folder, opt
   await need('cargo', ['run', '--quiet', ...bindgen, '--', compiled, `${folder}/glue`, bound]);
   if (name === bound) {
     copyFileSync(`${folder}/glue/${bound}.js`, `${glue}/${bound}.js`);
-    // Pages may check our declarations by a library of types that has no `Symbol.dispose`.
-    const types = readFileSync(`${folder}/glue/${bound}.d.ts`, 'utf8');
-    writeFileSync(`${glue}/${bound}.d.ts`, types.replace(/^ *\[Symbol\.dispose\].*\n/gm, ''));
+    // A page whose TypeScript does not know it, with the library of ES2022, would be told so.
+    const types = readFileSync(`${folder}/glue/${bound}.d.ts`, 'utf8').replaceAll('    [Symbol.dispose](): void;\n', '');
+    writeFileSync(`${glue}/${bound}.d.ts`, types);
   }
   await need('wasm-opt', [...optimise, ...optimiser, `${folder}/glue/${bound}_bg.wasm`, '-o', `${module}.optimised`]);
   renameSync(`${module}.optimised`, module);
@@ -120,5 +120,6 @@ export async function buildLibrary({ threads = true } = {}) {
   inline();
   say('compiling the npm package');
   await need('tsc', ['-p', at('web', 'tsconfig.json'), ...(threads ? [] : ['--noCheck'])]);
+  for (const licence of ['LICENSE-MIT', 'LICENSE-APACHE']) copyFileSync(at(licence), at('web', licence));
   cpSync(glue, at('web', 'dist', 'glue'), { recursive: true, preserveTimestamps: true });
 }
