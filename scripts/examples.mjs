@@ -2,7 +2,7 @@
 // and opens each in headless Chromium. Without a name, all environments of environments.mjs.
 import { spawn } from 'node:child_process';
 import { once } from 'node:events';
-import { cpSync, mkdirSync, readFileSync, readdirSync, rmSync } from 'node:fs';
+import { cpSync, mkdirSync, readFileSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
 import { createServer } from 'node:net';
 import path from 'node:path';
 import { pathToFileURL } from 'node:url';
@@ -34,7 +34,7 @@ async function pack() {
 async function install(name, { folder: page = `examples/${name}`, packages = [], files = {} }, tarball) {
   const folder = path.join(scratch, name);
   cpSync(at(page), folder, { recursive: true });
-  for (const [to, from] of Object.entries(files)) cpSync(at(from), path.join(folder, to));
+  for (const [file, text] of Object.entries(files)) writeFileSync(path.join(folder, file), text);
   for (const [from, to] of [['andy.glb', 'character.glb'], ['tshirt.safetensors', 'model.safetensors']]) {
     // Of an import map's page the folder itself is served.
     cpSync(at('www', 'public', from), path.join(folder, name === 'import-map' ? '.' : 'public', to));

@@ -108,7 +108,7 @@ async function bind({ package: crate, glue: bound, name, features: { folder, opt
 function inline() {
   const base64 = readFileSync(`${glue}/ctsn_bg.wasm`, 'base64');
   writeFileSync(`${glue}/inline.js`, `export const bytes = Uint8Array.from(atob('${base64}'), (letter) => letter.charCodeAt(0));\n`);
-  writeFileSync(`${glue}/inline.d.ts`, '/** ctsn_bg.wasm. */\nexport const bytes: Uint8Array<ArrayBuffer>;\n');
+  writeFileSync(`${glue}/inline.d.ts`, '/** ctsn_bg.wasm. */\nexport const bytes: BufferSource;\n');
 }
 
 /**

@@ -18,11 +18,25 @@ async function cargo(args, env = {}) {
 /** The tests of the core that need no machine but the browser's, compiled with further arguments of cargo. */
 async function cargoInBrowser(args) {
   await need('cargo', ['build', '--package', 'ctsn-bindgen', '--profile', 'tool', '--features', 'test-runner']);
-  return cargo(['--package', 'ctsn-tests', '--target', 'wasm32-unknown-unknown', ...args], {
+  return cargo(['--package', 'ctsn-tests', '--no-default-features', '--target', 'wasm32-unknown-unknown', ...args], {
     ...vulkan(),
     CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUNNER: at('target', 'tool', 'test-runner'),
     CHROMEDRIVER: chromedriver(),
     WASM_BINDGEN_TEST_TIMEOUT: '600',
+  });
+}
+
+/**
+ * The tests of the core on an emulated processor with NEON. Two of them would take three of four minutes there and are
+ * about no kernel: the count of allocations, and a walk through thousands of poses.
+ */
+async function cargoOnArm() {
+  const target = 'aarch64-unknown-linux-gnu';
+  await ensureRust(target);
+  const skipped = ['prediction_allocates', 'on_the_way_out'].flatMap((name) => ['--skip', name]);
+  return cargo(['--package', 'ctsn-core', '--package', 'ctsn-tests', '--no-default-features', '--target', target, '--', ...skipped], {
+    CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_LINKER: 'aarch64-linux-gnu-gcc',
+    CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_RUNNER: 'qemu-aarch64-static -L /usr/aarch64-linux-gnu',
   });
 }
 
@@ -47,7 +61,7 @@ const nodes = ['20.20.2', '22.23.3', '24.21.0'].filter((release) => parseInt(rel
 function vitestOn(release) {
   say(`Node ${release}`);
   const node = ['--yes', `--package=node-${process.platform}-${process.arch}@${release}`, '--', 'node'];
-  return vitestWith(['npm', 'exec', ...node, at('node_modules', 'vitest', 'vitest.mjs')], 'package');
+  return vitestWith(['npm', 'exec', ...node, at('node_modules', '.bin', 'vitest')], 'package');
 }
 
 /** One after the other: the sum of their results. */
@@ -77,6 +91,7 @@ const suites = {
   'native: the workspace': () => cargo(['--no-fail-fast', '--', '--show-output']),
   'browser: the core as WebAssembly with simd128': () => cargoInBrowser([]),
   'browser: the core as WebAssembly with relaxed SIMD': () => cargoInBrowser(relaxedSimd.cargo),
+  'emulated: the core on aarch64 with NEON': () => cargoOnArm(),
   'Node: the npm package': async () => {
     await buildLibrary();
     return vitest('package', 'simd128', 'oldest three');

@@ -14,16 +14,16 @@ export async function ensurePackages() {
 }
 
 /**
- * cargo, with the pinned toolchain of rust-toolchain.toml, the target wasm32-unknown-unknown, and the standard
- * library's source for the module with threads.
+ * cargo, with the pinned toolchain of rust-toolchain.toml, the target wasm32-unknown-unknown and further ones, and the
+ * standard library's source for the module with threads.
  */
-export async function ensureRust() {
+export async function ensureRust(...targets) {
   const cargo = await run('cargo', ['--version'], { capture: true });
   if (cargo.status !== 0) {
     throw new Stop(`Rust is missing (cargo --version: ${cargo.status}). Install it from https://rustup.rs, open a new terminal, and run this again.\n${cargo.output}`);
   }
   const sysroot = (await need('rustc', ['--print', 'sysroot'], { capture: true })).trim().split('\n').at(-1);
-  await addRust(`${sysroot}/lib/rustlib/wasm32-unknown-unknown`, 'target', 'wasm32-unknown-unknown');
+  for (const target of ['wasm32-unknown-unknown', ...targets]) await addRust(`${sysroot}/lib/rustlib/${target}`, 'target', target);
   await addRust(`${sysroot}/lib/rustlib/src/rust/library`, 'component', 'rust-src');
 }
 

@@ -2,31 +2,29 @@
 import { StrictMode, Suspense, useEffect, useMemo } from 'react';
 import { createRoot } from 'react-dom/client';
 import { Canvas, useFrame, useLoader } from '@react-three/fiber';
-import { AnimationMixer, DoubleSide, MeshStandardMaterial } from 'three';
+import { AnimationMixer, DoubleSide } from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
-import { Cloth, ClothLoader } from 'ctsn/three';
+import { Cloth, useClothModel } from 'ctsn/react';
 
-function Dressed() {
-  const { scene: character, animations } = useLoader(GLTFLoader, 'character.glb');
-  const model = useLoader(ClothLoader, 'model.safetensors');
-  const cloth = useMemo(() => {
-    const material = new MeshStandardMaterial({ color: 'steelblue', side: DoubleSide });
-    return new Cloth(model, character, material);
-  }, [model, character]);
-  const mixer = useMemo(() => new AnimationMixer(character), [character]);
+function Character({ scene, animations }) {
+  const mixer = useMemo(() => new AnimationMixer(scene), [scene]);
   useEffect(() => {
     mixer.clipAction(animations[0]).play();
     return () => mixer.stopAllAction();
   }, [mixer, animations]);
-  useEffect(() => () => cloth.dispose(), [cloth]);
-  useFrame((_, seconds) => {
-    mixer.update(seconds);
-    cloth.update();
-  });
+  useFrame((_, seconds) => mixer.update(seconds));
+  return <primitive object={scene} />;
+}
+
+function Dressed() {
+  const { scene, animations } = useLoader(GLTFLoader, 'character.glb');
+  const model = useClothModel('model.safetensors');
   return (
     <>
-      <primitive object={character} />
-      <primitive object={cloth} />
+      <Character scene={scene} animations={animations} />
+      <Cloth model={model} character={scene}>
+        <meshStandardMaterial color="steelblue" side={DoubleSide} />
+      </Cloth>
     </>
   );
 }

@@ -1,6 +1,6 @@
 //! A clip played forwards, backwards and at random gives the same cloth for the same pose, on CPU and GPU, and they
 //! agree: the repair of penetration has no memory.
-#![cfg(not(target_arch = "wasm32"))]
+#![cfg(feature = "machine")]
 
 use ctsn_core::cpu::Level;
 use ctsn_core::model::HostModel;

@@ -6,9 +6,10 @@ use ctsn_core::cpu::repair::spread::FOLLOW;
 use ctsn_core::model::HostModel;
 use ctsn_core::topology::Graph;
 use ctsn_core::{Predictor, Streams};
-#[cfg(not(target_arch = "wasm32"))]
+#[cfg(feature = "machine")]
 use ctsn_tests::finite::largest;
 use ctsn_tests::nested::{EMERGED, buried, emerged};
+#[cfg(feature = "machine")]
 use ctsn_tests::random;
 use ctsn_tests::sphere::{RADIUS, RINGS, length, model, sphere};
 use fastrand::Rng;
@@ -116,7 +117,7 @@ fn cloth_beside_the_rim_of_what_is_buried_comes_out() {
 
 #[test]
 fn no_body_makes_nan() {
-    #[cfg(not(target_arch = "wasm32"))]
+    #[cfg(feature = "machine")]
     let gpu = gpu();
     let mut rng = Rng::with_seed(6);
     let (positions, triangles) = sphere();
@@ -136,7 +137,7 @@ fn no_body_makes_nan() {
         let model = model(&mut rng, places.clone(), positions, triangles);
         let found = predict(&model);
         assert!(found.iter().all(|c| c.is_finite()), "{name}");
-        #[cfg(not(target_arch = "wasm32"))]
+        #[cfg(feature = "machine")]
         assert!(on_gpu(&gpu, &model).iter().all(|c| c.is_finite()), "{name}, GPU");
         let far = places.iter().zip(&found).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
         // Twice: by the first look and by the second.
@@ -191,13 +192,13 @@ fn what_neighbours_drag_into_the_body_comes_out() {
     assert!(length(&[found[3], found[4] - UPPER, found[5]]) > 0.98 * RADIUS, "the second stays inside: {found:?}");
 }
 
-#[cfg(not(target_arch = "wasm32"))]
+#[cfg(feature = "machine")]
 fn gpu() -> ctsn_gpu::Gpu {
     pollster::block_on(ctsn_gpu::Gpu::new()).expect("a Vulkan adapter (Debian: mesa-vulkan-drivers)")
 }
 
 /// What [`predict`] tells, from the GPU.
-#[cfg(not(target_arch = "wasm32"))]
+#[cfg(feature = "machine")]
 fn on_gpu(gpu: &ctsn_gpu::Gpu, model: &HostModel) -> Vec<f32> {
     use pollster::block_on;
     let model = block_on(ctsn_gpu::Model::new(gpu, model)).expect("a model");
@@ -206,7 +207,7 @@ fn on_gpu(gpu: &ctsn_gpu::Gpu, model: &HostModel) -> Vec<f32> {
     block_on(predictor.read()).expect("a prediction").positions
 }
 
-#[cfg(not(target_arch = "wasm32"))]
+#[cfg(feature = "machine")]
 #[test]
 fn the_gpu_finds_what_cloth_never_met() {
     let [a, b, c, d] = [10, 12, 14, 16].map(Rng::with_seed);
@@ -218,7 +219,7 @@ fn the_gpu_finds_what_cloth_never_met() {
     }
 }
 
-#[cfg(not(target_arch = "wasm32"))]
+#[cfg(feature = "machine")]
 #[test]
 fn the_gpu_agrees() {
     use pollster::block_on;

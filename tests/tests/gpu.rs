@@ -1,5 +1,5 @@
 //! The GPU device natively, by Vulkan. A machine without any adapter fails.
-#![cfg(not(target_arch = "wasm32"))]
+#![cfg(feature = "machine")]
 
 use ctsn_core::cpu::{Cpu, Level};
 use ctsn_core::model::{HostModel, Storage};

@@ -31,7 +31,7 @@ fn baseline() {
 }
 
 /// The shaders for software adapters and those for all others.
-#[cfg(not(target_arch = "wasm32"))]
+#[cfg(feature = "machine")]
 #[test]
 fn gpu() {
     let gpu = pollster::block_on(ctsn_gpu::Gpu::new()).expect("a Vulkan adapter (Debian: mesa-vulkan-drivers)");

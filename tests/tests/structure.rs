@@ -1,5 +1,5 @@
 //! The rules of ARCHITECTURE.md that a search of the tree can check. Native only: it reads the sources.
-#![cfg(not(target_arch = "wasm32"))]
+#![cfg(feature = "machine")]
 
 use ctsn_tests::tree::{Source, say, tree};
 

@@ -1,5 +1,6 @@
 // What a page in TypeScript writes, checked by compilers old and new with every file of declarations.
 import { ClothModel, CtsnError, loadModel, type Pose } from 'ctsn';
+import { loadModel as loadInWorker } from 'ctsn/worker';
 
 export async function onTheProcessor(pose: Pose): Promise<Float32Array> {
   const model = await loadModel('model.safetensors', { threads: 'auto', onProgress: ({ loaded }) => console.log(loaded) });
@@ -13,6 +14,11 @@ export async function wherever(pose: Float32Array): Promise<void> {
   const { positions } = await model.predictCloth(pose);
   console.log(positions.length, model.backend, model.fallback ?? 'as wished');
   model.dispose();
+}
+
+export async function elsewhere(pose: Float32Array): Promise<Float32Array> {
+  const model = await loadInWorker('model.safetensors');
+  return (await model.predictCloth(pose, { quality: 'coarse' })).positions;
 }
 
 export function explain(error: unknown): string {

@@ -2,7 +2,7 @@ import { download } from './download.js';
 import { CtsnError } from './error.js';
 
 /** Where a WebAssembly module comes from, if not from beside the package's files. */
-export type WasmSource = string | URL | ArrayBuffer | Uint8Array<ArrayBuffer> | WebAssembly.Module;
+export type WasmSource = string | URL | BufferSource | WebAssembly.Module;
 
 /** Where a module is if the page does not say. */
 export interface Beside {
@@ -11,7 +11,7 @@ export interface Beside {
   /** By which options of `loadModel` a page says another. */
   option: string;
   /** A module for any browser in a chunk of JavaScript, for pages whose bundler lost the file. No other fetches it. */
-  inline?: () => Promise<{ bytes: Uint8Array<ArrayBuffer> }>;
+  inline?: () => Promise<{ bytes: BufferSource }>;
 }
 
 /** A module, or its bytes. What a page names must be one; in place of what is beside the package, `inline` will do. */
