@@ -3,10 +3,11 @@
 //   npm run fuzz -- --minutes 10        all targets, so long together
 //   npm run fuzz -- --minutes 10 gltf   one of them: safetensors, model, pose, gltf
 import { mkdirSync } from 'node:fs';
+import { fileURLToPath } from 'node:url';
 import { parseArgs } from 'node:util';
 import { at, main, need, run, say, Stop } from './step.mjs';
 
-const TARGETS = ['safetensors', 'model', 'pose', 'gltf'];
+export const TARGETS = ['safetensors', 'model', 'pose', 'gltf'];
 
 /**
  * What cargo-fuzz asks of the compiler, but for the sanitizers, which only its nightly has: counters in every branch
@@ -39,7 +40,7 @@ export async function fuzz(targets, seconds) {
   return counts;
 }
 
-if (process.argv[1] === at('scripts', 'fuzz.mjs')) {
+if (process.argv[1] === fileURLToPath(import.meta.url)) {
   await main(async () => {
     const { values, positionals } = parseArgs({ allowPositionals: true, options: { minutes: { type: 'string', default: '4' } } });
     const targets = positionals.length > 0 ? positionals : TARGETS;

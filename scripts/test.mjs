@@ -3,6 +3,7 @@ import { existsSync, mkdirSync, readFileSync, rmSync } from 'node:fs';
 import { chromedriver, chromium, firefox, vulkan, webkitDriver, xvfb } from './browser.mjs';
 import { tested } from './environments.mjs';
 import { tryExamples } from './examples.mjs';
+import { fuzz, TARGETS } from './fuzz.mjs';
 import { buildLibrary, relaxedSimd } from './library.mjs';
 import { at, main, need, run, say, Stop } from './step.mjs';
 import { ensureRust } from './toolchain.mjs';
@@ -92,6 +93,7 @@ const suites = {
   'browser: the core as WebAssembly with simd128': () => cargoInBrowser([]),
   'browser: the core as WebAssembly with relaxed SIMD': () => cargoInBrowser(relaxedSimd.cargo),
   'emulated: the core on aarch64 with NEON': () => cargoOnArm(),
+  'native: a minute of random input': async () => settle(0, Object.keys(await fuzz(TARGETS, 60 / TARGETS.length)).length, 0),
   'Node: the npm package': async () => {
     await buildLibrary();
     return vitest('package', 'simd128', 'oldest three');
