@@ -10,6 +10,8 @@ await main(async () => {
     ['cargo', 'clippy', '--package', 'ctsn-wasm', '--package', 'ctsn-wasm-gpu', '--profile', 'wasm', '--target', 'wasm32-unknown-unknown', '--', '--deny', 'warnings'],
     ['tsc', '-p', at('web', 'tests')],
     ['tsc', '-p', at('www')],
+    // Every public member has its documentation, and every link in it leads somewhere.
+    [at('docs', 'node_modules', '.bin', 'typedoc'), '--options', at('docs', 'typedoc.json'), '--emit', 'none'],
     ['publint', at('web'), '--strict'],
     // The package is ESM alone: CommonJS imports it, or requires it on Node from 20.19 on.
     ['attw', '--pack', at('web'), '--profile', 'esm-only', '--quiet'],

@@ -17,10 +17,9 @@ export class ClothBuffers {
   readonly positions: GPUBuffer;
   /** World unit normals of the cloth vertices [3·n]. */
   readonly normals: GPUBuffer;
-  /**
-   * Positions and normals of the drawn vertices [3·d]; `positions` and `normals` where the model has no drawn surface.
-   */
+  /** Positions of the drawn vertices [3·d]; `positions` where the model has no drawn surface. */
   readonly drawnPositions: GPUBuffer;
+  /** Their unit normals [3·d]; `normals` where the model has no drawn surface. */
   readonly drawnNormals: GPUBuffer;
   /** The device they are on. */
   readonly device: GPUDevice;

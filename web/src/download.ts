@@ -1,14 +1,16 @@
 import { CtsnError } from './error.js';
 
-/** Bytes received so far, and bytes in all where that is known before the end. */
+/** How much of a file has come, bytes. */
 export interface Progress {
+  /** Received so far. */
   loaded: number;
-  /** Absent when the server compresses on the way: then the announced length is not the length of the file. */
+  /** Of the whole file. Absent when the server compresses on the way: then the announced length is not the length of the file. */
   total?: number;
 }
 
 /** How to ask for a file. */
 export interface DownloadOptions {
+  /** Hears of every piece that comes. */
   onProgress?: ((progress: Progress) => void) | undefined;
   /** Passed to `fetch`: headers, credentials. Files asked for in a way of one's own are not shared. */
   request?: RequestInit | undefined;

@@ -29,6 +29,7 @@ export type CtsnErrorCode =
 
 /** Every error this package throws on purpose. */
 export class CtsnError extends Error {
+  /** Tells it from other errors where the class is another copy's. */
   override readonly name = 'CtsnError';
   /** What went wrong, as a stable word. */
   readonly code: CtsnErrorCode;
@@ -39,6 +40,7 @@ export class CtsnError extends Error {
   /** Names of the joints, the worst first, for the code `misfit`. */
   readonly joints?: readonly string[];
 
+  /** @internal */
   constructor(
     code: CtsnErrorCode,
     message: string,

@@ -1,14 +1,16 @@
 /** How a model was trained, as far as its file says. */
 export interface Training {
-  /** Names of the files of character and garment. */
+  /** Name of the character's file. */
   readonly character?: string | undefined;
+  /** Name of the garment's file. */
   readonly garment?: string | undefined;
   /** Name of the fabric that was simulated. */
   readonly fabric?: string | undefined;
   /** Names of the clips whose poses it has seen. */
   readonly clips?: readonly string[] | undefined;
-  /** Poses that were simulated, and how many of them mixed limbs and trunks of others. */
+  /** Poses that were simulated. */
   readonly poses?: number | undefined;
+  /** How many of them mixed limbs and trunks of others. */
   readonly mixed?: number | undefined;
   /** Mean distance of a vertex from the simulation in poses it was not trained on, metres. */
   readonly distance?: number | undefined;
@@ -30,9 +32,11 @@ export interface ModelInfo {
   readonly skeletonMatrices: number;
   /** Basis matrices of the mesh stream, k; 0 where it adds nothing. */
   readonly meshMatrices: number;
-  /** Graph layers of the mesh stream, their features and attention heads. */
+  /** Graph layers of the mesh stream. */
   readonly layers: number;
+  /** Features of a vertex in a layer, F. */
   readonly features: number;
+  /** Attention heads, C. */
   readonly heads: number;
   /** Steps of the polish; 0 without one. */
   readonly polish: number;
@@ -42,5 +46,6 @@ export interface ModelInfo {
   readonly bytes: number;
   /** Whether the file says what poses were seen in training; without it `confidence` is always 1. */
   readonly knowsPoses: boolean;
+  /** How it was trained, as far as the file says. */
   readonly training?: Training | undefined;
 }

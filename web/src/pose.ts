@@ -1,7 +1,12 @@
 import { CtsnError } from './error.js';
 
 /** A 4×4 matrix, column after column as in three.js: 16 numbers, or an object that has them as `elements`. */
-export type Matrix = ArrayLike<number> | { readonly elements: ArrayLike<number> };
+export type Matrix =
+  | ArrayLike<number>
+  | {
+      /** The 16 numbers. */
+      readonly elements: ArrayLike<number>;
+    };
 
 /**
  * World matrices of the joints, in metres: 16·J numbers in the order of `ClothModel.joints`, one matrix after the other

@@ -1,5 +1,5 @@
 /**
- * WebGPU's own types where the page's TypeScript knows them, by its library (since 6.0) or by `@webgpu/types`; else any
+ * WebGPU's own types where the page's TypeScript knows them, by its library or by `@webgpu/types`; else any
  * object. Named outright they would be errors there.
  */
 type Known<Name extends string> =

@@ -74,11 +74,16 @@ export function useCloth(
 /** A cloth's own properties, and those of any mesh: `castShadow`, `visible`, `onClick`, … */
 export interface ClothProps
   extends Omit<ThreeElements['mesh'], 'ref' | 'args' | 'geometry' | 'children'>,
-    Pick<ClothOptions, 'bones' | 'fit'>,
-    Partial<Pick<ClothMesh, 'quality' | 'blend'>> {
+    Pick<ClothOptions, 'bones' | 'fit'> {
+  /** What `useClothModel` gave, or `loadModel`. */
   model: AnyClothModel;
   /** What `useGLTF` or `useLoader` gave as `scene`. */
   character: Character;
+  /** How much of the network it takes. */
+  quality?: ClothMesh['quality'];
+  /** Frames over which a change of `quality` is spread. */
+  blend?: number;
+  /** Takes the cloth, an object of three.js. */
   ref?: Ref<ClothMesh>;
   /** A material, in place of the plain one. */
   children?: ReactNode;

@@ -103,6 +103,7 @@ export class Cloth<M extends Material | Material[] = Material> extends Mesh<Buff
     return this.#fade.length;
   }
 
+  /** 0 or more. */
   set blend(updates: number) {
     this.#fade.length = updates;
   }

@@ -30,6 +30,7 @@ export class ClothLoader<M extends ClothModel = CpuClothModel> extends Loader<M>
     return this as ClothLoader<ClothModel>;
   }
 
+  /** Loads a model and hands it to `onLoad`; `loadAsync` answers with it. */
   override load(
     url: string,
     onLoad: (model: M) => void,

@@ -45,6 +45,7 @@ export class Wardrobe {
   readonly #tally: Record<Quality, number> = { full: 0, coarse: 0, skinned: 0 };
   #spent = 0;
 
+  /** An empty wardrobe; `budget` is in milliseconds per frame. */
   constructor({ budget = 8 }: { budget?: number } = {}) {
     this.budget = budget;
   }

@@ -3,7 +3,10 @@
 use crate::cpu::{Cpu, Kernel};
 use crate::operation::Normals;
 
-/// +Y, too, where a vertex has more area around it than f32 can hold.
+/// Twice the area, m², around a vertex that has a normal: the squares of less lose their digits in f32.
+const LEAST: f32 = 1e-18;
+
+/// +Y where a vertex has no area around it, or more than f32 can hold.
 impl Kernel for Normals<&[f32], &mut [f32], &[u32]> {
     fn run(self, _: &mut Cpu) {
         let (positions, normals) = (self.positions.as_chunks::<3>().0, self.normals.as_chunks_mut::<3>().0);
@@ -20,7 +23,7 @@ impl Kernel for Normals<&[f32], &mut [f32], &[u32]> {
         }
         for normal in normals {
             let length = normal.iter().map(|c| c * c).sum::<f32>().sqrt();
-            let told = length > f32::MIN_POSITIVE && length.is_finite();
+            let told = length > LEAST && length.is_finite();
             *normal = if told { normal.map(|c| c / length) } else { [0.0, 1.0, 0.0] };
         }
     }
@@ -39,9 +42,12 @@ impl crate::suite::Suite for Normals<Vec<f32>, Vec<f32>, Vec<u32>> {
         let soups = [1, 2, 67, 257].map(&mut soup);
         let (positions, triangles) = crate::suite::sphere(0.05, 24, 13);
         let sphere = Self { normals: vec![0.5; positions.len()], positions, triangles };
-        // More area than f32 can hold.
-        let huge = Self { positions: sphere.positions.iter().map(|c| c * 1e22).collect(), ..sphere.clone() };
-        [&soups[..], &[sphere, huge]].concat()
+        // More area than f32 can hold, and less than its square can.
+        let [huge, tiny] = [1e22, 1e-9].map(|scale| {
+            let positions = sphere.positions.iter().map(|c| c * scale).collect();
+            Self { positions, ..sphere.clone() }
+        });
+        [&soups[..], &[sphere, huge, tiny]].concat()
     }
 
     fn truth(&self) -> Vec<Option<Vec<f64>>> {
@@ -51,7 +57,7 @@ impl crate::suite::Suite for Normals<Vec<f32>, Vec<f32>, Vec<u32>> {
             let [a, b, c] = triangle.map(|i| points[i as usize]);
             triangle.iter().for_each(|i| sums[*i as usize] += (b - a).cross(c - a));
         }
-        let told = |sum: &glam::DVec3| sum.length() > f64::from(f32::MIN_POSITIVE) && sum.length() < 1e38;
+        let told = |sum: &glam::DVec3| sum.length() > f64::from(LEAST) && sum.length() < 1e38;
         let normal = |sum: &glam::DVec3| if told(sum) { sum.normalize() } else { glam::DVec3::Y };
         vec![Some(sums.iter().flat_map(|sum| normal(sum).to_array()).collect())]
     }
