@@ -68,7 +68,7 @@ async function serving(folder, script, body) {
     }
     return await body(address);
   } finally {
-    process.kill(-server.pid);
+    if (server.exitCode === null) process.kill(-server.pid);
   }
 }
 
