@@ -6,7 +6,7 @@ import { at } from './step.mjs';
 
 const ROUNDS = 7;
 
-/** In the page: the longest time, ms, between two turns of its event loop while nothing, a load, or predictions go on. */
+/** In the page: the longest time, ms, between turns of its event loop while nothing, a load, or predictions go on. */
 async function holdUp({ entry, pose }) {
   const { loadModel } = await import(entry);
   const { port1, port2 } = new MessageChannel();

@@ -1,5 +1,5 @@
-// npm run fuzz: random input, led by the branches that it reaches, for what reads files and poses. Anything that panics,
-// hangs or is not finite is kept in out/fuzz and ends the run.
+// npm run fuzz: random input, led by the branches that it reaches, for what reads files and poses. What panics, hangs
+// or is not finite is kept in out/fuzz and ends the run.
 //   npm run fuzz -- --minutes 10        all targets, so long together
 //   npm run fuzz -- --minutes 10 gltf   one of them: safetensors, model, pose, gltf
 import { mkdirSync } from 'node:fs';

@@ -31,7 +31,7 @@ fn normals(@builtin(global_invocation_id) id: vec3<u32>) {
         let a = position(corner);
         sum += cross(position(corner + 1u) - a, position(corner + 2u) - a);
     }
-    // +Y where a vertex has no area around it, or more than f32 can hold; the squares of less than 1e-18 lose their digits.
+    // +Y where a vertex has no area around it, or more than f32 can hold; squares of less than 1e-18 lose their digits.
     let length = sqrt(dot(sum, sum));
     let normal = select(vec3(0.0, 1.0, 0.0), sum / length, length > 1e-18 && length < 3.4e38);
     normals_of[3u * i] = normal.x;

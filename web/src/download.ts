@@ -4,7 +4,7 @@ import { CtsnError } from './error.js';
 export interface Progress {
   /** Received so far. */
   loaded: number;
-  /** Of the whole file. Absent when the server compresses on the way: then the announced length is not the length of the file. */
+  /** Of the whole file. Absent when the server compresses on the way: then the length announced is another. */
   total?: number;
 }
 
@@ -22,7 +22,7 @@ export interface DownloadOptions {
 export async function download(
   address: string | URL,
   { onProgress, request }: DownloadOptions = {},
-): Promise<Uint8Array<ArrayBuffer>> {
+): Promise<Uint8Array> {
   const local = readLocal(address);
   if (local) {
     onProgress?.({ loaded: local.length, total: local.length });
@@ -44,7 +44,7 @@ async function collect(
   response: Response,
   onProgress: DownloadOptions['onProgress'],
   refuse: (cause: unknown) => never,
-): Promise<Uint8Array<ArrayBuffer>> {
+): Promise<Uint8Array> {
   const announced = Number(response.headers.get('content-length'));
   const total = announced > 0 && !response.headers.get('content-encoding') ? announced : undefined;
   if (!response.body) return new Uint8Array(await response.arrayBuffer().catch(refuse));
@@ -74,7 +74,7 @@ interface NodeProcess {
  * Node's fetch refuses `file:`. Node's file system is looked up at run time, so that no bundler for the web sees an
  * import.
  */
-function readLocal(address: string | URL): Uint8Array<ArrayBuffer> | undefined {
+function readLocal(address: string | URL): Uint8Array | undefined {
   const fs = (globalThis as { process?: NodeProcess }).process?.getBuiltinModule?.('node:fs');
   if (!fs || !String(address).startsWith('file:')) return undefined;
   try {

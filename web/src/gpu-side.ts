@@ -77,8 +77,8 @@ function adopt(device: GPUDevice): Promise<Gpu> {
 
 /**
  * wgpu cannot be given a device; it asks `navigator.gpu` for one, and reads that property once, during this very call.
- * So for the length of the call an own property of `navigator` hides the real one, or a polyfill's own: its only adapter
- * has only this device.
+ * So for the length of the call an own property of `navigator` hides the real one, or a polyfill's own: its only
+ * adapter has only this device.
  */
 function handOver(device: GPUDevice): Promise<Gpu> {
   const { features, limits, adapterInfo } = device;

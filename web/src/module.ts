@@ -36,7 +36,7 @@ export async function findModule(
 
 /** Servers answer pages in place of files that they lack, so the first bytes are looked at. */
 async function downloadModule(address: string | URL): Promise<Uint8Array<ArrayBuffer>> {
-  const bytes = await download(address);
+  const bytes = (await download(address)) as Uint8Array<ArrayBuffer>;
   const start = new TextDecoder().decode(bytes.subarray(0, 4));
   if (start === '\0asm') return bytes;
   const found = `${bytes.length} bytes that begin with ${JSON.stringify(start)}`;

@@ -20,21 +20,30 @@ export type Pose = ArrayLike<number> | readonly Matrix[] | Readonly<Record<strin
  */
 const STRETCH = 20;
 
-/** Writes poses of one model, and refuses what cannot be one. */
+/** Writes poses of one model. Refuses what cannot be one, as the first shows that is. */
 export class PoseWriter {
   readonly #joints: readonly string[];
   /** Of each joint the one bound nearest, and how far away that is [J]. Bones are rigid: this hardly changes. */
-  readonly #nearest: readonly { joint: number; distance: number }[];
+  readonly #nearest: Uint32Array;
+  readonly #distances: Float32Array;
+  /**
+   * Whether a pose was found to be one. A page makes all in the same way, and what looks at them in every frame
+   * allocates as long as the browser has not compiled it.
+   */
+  #trusted = false;
 
   /** `inverseBind`: row-major 3×4, one joint after the other [12·J]. */
   constructor(joints: readonly string[], inverseBind: Float32Array) {
     this.#joints = joints;
     const places = joints.map((_, joint) => placeOf(inverseBind.subarray(12 * joint, 12 * joint + 12)));
-    this.#nearest = places.map((place, at) => {
+    this.#nearest = new Uint32Array(joints.length);
+    // A joint by itself, or bound at another's place, tells nothing: its distance is 0.
+    this.#distances = new Float32Array(joints.length);
+    places.forEach((place, at) => {
       const distances = places.map((other, joint) => (joint === at ? Infinity : distance(place, other)));
-      const joint = distances.indexOf(Math.min(...distances));
-      // A joint by itself, or bound at another's place, tells nothing.
-      return joint < 0 ? { joint: at, distance: 0 } : { joint, distance: distances[joint]! };
+      const least = Math.min(...distances);
+      this.#nearest[at] = Math.max(distances.indexOf(least), 0);
+      this.#distances[at] = least < Infinity ? least : 0;
     });
   }
 
@@ -44,8 +53,10 @@ export class PoseWriter {
     else if (isList(pose)) this.#writeList(pose, out);
     else if (typeof pose === 'object' && pose) this.#writeNamed(pose, out);
     else throw new CtsnError('argument', `a pose is a list of numbers or matrices, or matrices by name, not ${String(pose)}`);
-    this.#checkRows(out);
+    if (this.#trusted) return;
+    checkRows(this.#joints, out);
     this.#checkUnit(out);
+    this.#trusted = true;
   }
 
   #writeList(pose: ArrayLike<number> | readonly Matrix[], out: Float32Array): void {
@@ -72,22 +83,10 @@ export class PoseWriter {
     const numbers = matrix && (('elements' in matrix ? matrix.elements : matrix) as Partial<ArrayLike<number>>);
     if (numbers?.length !== 16) {
       const found = numbers?.length ?? String(matrix);
-      throw new CtsnError('joint_count', `the matrix of joint "${this.#joints[joint]!}": 16 numbers wanted, ${found} found`);
+      const what = `the matrix of joint "${this.#joints[joint]!}"`;
+      throw new CtsnError('joint_count', `${what}: 16 numbers wanted, ${found} found`);
     }
     out.set(numbers as ArrayLike<number>, 16 * joint);
-  }
-
-  /** Refuses matrices whose last row is not 0 0 0 1: those of other libraries have their translation there. */
-  #checkRows(pose: Float32Array): void {
-    for (let at = 0; at < pose.length; at += 16) {
-      const off = Math.abs(pose[at + 3]!) + Math.abs(pose[at + 7]!) + Math.abs(pose[at + 11]!);
-      const error = off + Math.abs(pose[at + 15]! - 1);
-      // What is not finite the core refuses, with its place.
-      if (!(error > 1e-3 && error < Infinity)) continue;
-      const row = [3, 7, 11, 15].map((i) => pose[at + i]!).join(' ');
-      const what = `the matrix of joint "${this.#joints[at / 16]!}" has the last row ${row}, wanted is 0 0 0 1`;
-      throw new CtsnError('transposed', `${what}: column after column, as in three.js; is this pose transposed?`);
-    }
   }
 
   /** Refuses a pose in centimetres: one where most joints are far from one another, not a stray one. */
@@ -96,9 +95,10 @@ export class PoseWriter {
     let far = 0;
     let sum = 0;
     for (let joint = 0; joint < this.#nearest.length; joint++) {
-      const { joint: near, distance } = this.#nearest[joint]!;
+      const distance = this.#distances[joint]!;
       if (!(distance > 0)) continue;
-      const [a, b] = [16 * joint + 12, 16 * near + 12];
+      const a = 16 * joint + 12;
+      const b = 16 * this.#nearest[joint]! + 12;
       const x = pose[a]! - pose[b]!;
       const y = pose[a + 1]! - pose[b + 1]!;
       const z = pose[a + 2]! - pose[b + 2]!;
@@ -111,6 +111,18 @@ export class PoseWriter {
     if (2 * far <= judged) return;
     const times = `the joints stand ${(sum / far).toPrecision(2)} times as far from one another as they were bound`;
     throw new CtsnError('unit', `${times}: metres are wanted; is this pose in centimetres?`);
+  }
+}
+
+/** Refuses matrices whose last row is not 0 0 0 1: those of other libraries have their translation there. */
+function checkRows(joints: readonly string[], pose: Float32Array): void {
+  for (const [joint, name] of joints.entries()) {
+    const row = [3, 7, 11, 15].map((i) => pose[16 * joint + i]!);
+    const error = Math.max(...row.map((value, i) => Math.abs(value - Number(i === 3))));
+    // What is not finite the core refuses, with its place.
+    if (!(error > 1e-3 && error < Infinity)) continue;
+    const what = `the matrix of joint "${name}" has the last row ${row.join(' ')}, wanted is 0 0 0 1`;
+    throw new CtsnError('transposed', `${what}: column after column, as in three.js; is this pose transposed?`);
   }
 }
 

@@ -113,8 +113,8 @@ function toward(from: number, to: number, step: number): number {
 const fixed = { full: new Fade('full'), coarse: new Fade('coarse'), skinned: new Fade('skinned') };
 
 /** @internal What a call of `predictCloth` asks for. */
-export function fadeOf(options: { quality?: Quality | undefined; fade?: Fade | undefined } = {}): Fade {
-  const fade = options.fade ?? fixed[options.quality ?? 'full'];
+export function fadeOf(options: { quality?: Quality | undefined; fade?: Fade | undefined } | undefined): Fade {
+  const fade = options?.fade ?? fixed[options?.quality ?? 'full'];
   if (fade) return fade;
-  throw new CtsnError('argument', `quality: "full", "coarse" or "skinned" wanted, "${String(options.quality)}" found`);
+  throw new CtsnError('argument', `quality: "full", "coarse" or "skinned" wanted, "${String(options?.quality)}" found`);
 }

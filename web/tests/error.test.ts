@@ -90,11 +90,15 @@ test('poses as pages have them: lists, matrices, doubles; transposed or in centi
   expect(await refuse(matrices.map(() => [1, 2]))).toMatchObject({ code: 'joint_count' });
   expect(await refuse(matrices.map(() => null))).toMatchObject({ code: 'joint_count' });
   for (const nothing of [undefined, null, 7, 'pose']) expect(await refuse(nothing)).toMatchObject({ code: 'argument' });
-  const transposed = pose.map((_, at) => pose[at - (at % 16) + 4 * (at % 4) + Math.floor((at % 16) / 4)]!);
-  expect(await refuse(transposed)).toMatchObject({ code: 'transposed', message: expect.stringContaining(model.joints[0]!) as string });
-  const centimetres = pose.map((value, at) => (at % 16 > 11 && at % 16 < 15 ? 100 * value : value));
-  expect(await refuse(centimetres)).toMatchObject({ code: 'unit', message: expect.stringMatching(/centimetres/) as string });
   model.dispose();
+  const { model: fresh } = await loadGolden('small');
+  const refuseFirst = (form: unknown) => failure(() => fresh.predictCloth(form as Pose));
+  const transposed = pose.map((_, at) => pose[at - (at % 16) + 4 * (at % 4) + Math.floor((at % 16) / 4)]!);
+  expect(await refuseFirst(transposed)).toMatchObject({ code: 'transposed', message: expect.stringContaining(model.joints[0]!) as string });
+  const centimetres = pose.map((value, at) => (at % 16 > 11 && at % 16 < 15 ? 100 * value : value));
+  expect(await refuseFirst(centimetres)).toMatchObject({ code: 'unit', message: expect.stringMatching(/centimetres/) as string });
+  expect(fresh.predictCloth(pose).positions).toEqual(wanted);
+  fresh.dispose();
 });
 
 test('a model that was disposed of', async () => {

@@ -32,12 +32,14 @@ async function remote(): Promise<Golden & { far: WorkerClothModel; spares: Quest
   return { ...golden, far: new Model(port, description), spares, told };
 }
 
-const positionsOf = (cloth: Cloth) => cloth.geometry.getAttribute('position').array;
+type FarCloth = Cloth<MeshBasicMaterial, WorkerClothModel>;
+
+const positionsOf = (cloth: FarCloth) => cloth.geometry.getAttribute('position').array;
 
 test('a cloth shows what its worker answers, a turn late, and gives the arrays back', async () => {
   const { far, model, poses, positions, tolerance, spares } = await remote();
   const character = characterOf(far.joints, poses[0]!);
-  const cloth: Cloth = new Cloth(far, character, new MeshBasicMaterial());
+  const cloth: FarCloth = new Cloth(far, character, new MeshBasicMaterial());
   expect(positionsOf(cloth).every((value) => value === 0), 'nothing is there yet').toBe(true);
   await cloth.settled();
   const moved = (at: number) => {

@@ -1,11 +1,14 @@
 /** Cloth for React Three Fiber. */
 import { useFrame, useThree, type ThreeElements } from '@react-three/fiber';
 import { createElement, use, useLayoutEffect, useState, type ReactElement, type ReactNode, type Ref } from 'react';
-import { DoubleSide, MeshStandardMaterial } from 'three';
+import { DoubleSide, MeshStandardMaterial, type Material } from 'three';
 import { loadModel, type LoadOptions } from '../load.js';
 import type { CpuClothModel } from '../model.js';
 import type { AnyClothModel, Character, ClothOptions } from '../three/index.js';
-import { Cloth as ClothMesh } from '../three/cloth.js';
+import { Cloth as ThreeCloth } from '../three/cloth.js';
+
+/** A cloth of three.js, of whatever model and material. */
+export type ClothMesh = ThreeCloth<Material | Material[], AnyClothModel>;
 
 const models = new Map<string, Promise<CpuClothModel>>();
 
@@ -51,7 +54,7 @@ export function useCloth(
   // Made and freed by one effect: StrictMode runs it twice, and a render that is thrown away leaves nothing behind.
   useLayoutEffect(() => {
     const material = new MeshStandardMaterial({ side: DoubleSide });
-    const made: ClothMesh = new ClothMesh(model, character, material, { renderer, bones, fit });
+    const made: ClothMesh = new ThreeCloth<Material | Material[], AnyClothModel>(model, character, material, { renderer, bones, fit });
     setCloth(made);
     return () => {
       made.dispose();

@@ -29,7 +29,7 @@ const IN_FLIGHT = 2;
  * Several cloths may share one model. `dispose()` frees the geometry; whoever made the model and the material frees
  * those.
  */
-export class Cloth<M extends Material | Material[] = Material> extends Mesh<BufferGeometry, M> {
+export class Cloth<M extends Material | Material[] = Material, N extends AnyClothModel = ClothModel> extends Mesh<BufferGeometry, M> {
   override readonly type: string = 'Cloth';
   /**
    * How much of the network it takes. It may change at any time, and blends. `auto`: what a `Wardrobe` says; without
@@ -61,7 +61,7 @@ export class Cloth<M extends Material | Material[] = Material> extends Mesh<Buff
    * Dresses `character`, which may be a skeleton, a skinned mesh, or the object above several. Throws a `CtsnError`
    * where an argument is of the wrong kind, a joint has no bone, or the character is not the one of the model.
    */
-  constructor(model: AnyClothModel, character: Character, material: M, options: ClothOptions = {}) {
+  constructor(model: N, character: Character, material: M, options: ClothOptions = {}) {
     super(createGeometry(checked(model, character, material, options)), material);
     this.#dressing = options instanceof Twin ? options.dressing : Dressing.of(model, character, options);
     this.#renderer = options.renderer;
@@ -72,8 +72,8 @@ export class Cloth<M extends Material | Material[] = Material> extends Mesh<Buff
   }
 
   /** The network that moves this cloth. */
-  get model(): AnyClothModel {
-    return this.#dressing.model;
+  get model(): N {
+    return this.#dressing.model as N;
   }
 
   /** The objects whose world matrices make the pose, in the order of `model.joints`. */
@@ -86,7 +86,7 @@ export class Cloth<M extends Material | Material[] = Material> extends Mesh<Buff
    * place in the scene stay. The model before is not disposed of. What throws in the constructor throws here, and the
    * cloth stays as it was.
    */
-  setModel(model: AnyClothModel, { fit }: Pick<ClothOptions, 'fit'> = {}): this {
+  setModel(model: N, { fit }: Pick<ClothOptions, 'fit'> = {}): this {
     const dressing = this.#dressing.with(checked(model, this, this.material, {}), fit);
     const geometry = createGeometry(model);
     this.#leave();
@@ -137,7 +137,7 @@ export class Cloth<M extends Material | Material[] = Material> extends Mesh<Buff
    */
   update(): this {
     this.#complain();
-    if (this.#read()) this.#ask(this.quality === 'auto' ? 'full' : this.quality, 1);
+    if (this.#dressing.read(this)) this.#ask(this.quality === 'auto' ? 'full' : this.quality, 1);
     this.#place();
     return this;
   }
@@ -148,7 +148,7 @@ export class Cloth<M extends Material | Material[] = Material> extends Mesh<Buff
    */
   locate(): Float32Array | undefined {
     this.#complain();
-    const there = this.#read();
+    const there = this.#dressing.read(this);
     this.#place();
     if (!there) return undefined;
     this.#bound();
@@ -176,7 +176,7 @@ export class Cloth<M extends Material | Material[] = Material> extends Mesh<Buff
    */
   #begin(): void {
     this.#shown = ++this.#asked;
-    if (this.#read()) this.#receive(this.model.predictCloth(this.#dressing.pose, this.#atOnce));
+    if (this.#dressing.read(this)) this.#receive(this.model.predictCloth(this.#dressing.pose, this.#atOnce));
     this.#place();
   }
 
@@ -185,11 +185,6 @@ export class Cloth<M extends Material | Material[] = Material> extends Mesh<Buff
     this.geometry.dispose();
     this.#fade.dispose();
     this.#zeroCopy.dispose();
-  }
-
-  /** Reads the bones; false for a character scaled to nothing. */
-  #read(): boolean {
-    return this.#dressing.read(this);
   }
 
   #ask(quality: Quality, every: number): void {

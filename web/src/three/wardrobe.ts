@@ -1,4 +1,4 @@
-import { Frustum, Matrix4, Sphere, Vector3, type Camera } from 'three';
+import { Frustum, Matrix4, Sphere, Vector3, type Camera, type Material } from 'three';
 import type { Quality } from '../quality.js';
 import { refreshAbove } from './bones.js';
 import type { Cloth } from './cloth.js';
@@ -16,9 +16,12 @@ const FRESH = 0.1;
 /** Mean milliseconds of a prediction on the CPU, as measured; nothing where there was none yet. */
 type Cost = Partial<Record<Quality, number>>;
 
+/** A cloth of any material and model. */
+type AnyCloth = Cloth<Material | Material[], AnyClothModel>;
+
 /** One cloth as the wardrobe sees it in this frame. */
 interface Place {
-  readonly cloth: Cloth;
+  readonly cloth: AnyCloth;
   readonly before: Float32Array;
   /** Size on the screen, and how much it moves; 0 off screen. */
   importance: number;
@@ -61,7 +64,7 @@ export class Wardrobe {
   }
 
   /** Takes cloths in, each once. */
-  add(...cloths: Cloth[]): this {
+  add(...cloths: AnyCloth[]): this {
     for (const cloth of cloths) {
       if (this.#places.some((place) => place.cloth === cloth)) continue;
       const before = new Float32Array(16 * cloth.bones.length);
@@ -71,7 +74,7 @@ export class Wardrobe {
   }
 
   /** Lets cloths go: before they are disposed of. */
-  remove(...cloths: Cloth[]): this {
+  remove(...cloths: AnyCloth[]): this {
     for (const cloth of cloths) {
       const at = this.#places.findIndex((place) => place.cloth === cloth);
       if (at >= 0) this.#places.splice(at, 1);
@@ -144,7 +147,7 @@ export class Wardrobe {
     cost[shown] = (cost[shown] ?? spent) + FRESH * (spent - (cost[shown] ?? spent));
   }
 
-  #cost({ model }: Cloth): Cost {
+  #cost({ model }: AnyCloth): Cost {
     let cost = this.#costs.get(model);
     if (!cost) this.#costs.set(model, (cost = {}));
     return cost;
