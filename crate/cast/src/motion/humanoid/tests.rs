@@ -43,6 +43,7 @@ fn stick_figure() -> Character {
         surface: Surface::default(),
         clips: vec![],
         metres_per_unit: 1.0,
+        parts: Default::default(),
     }
 }
 
