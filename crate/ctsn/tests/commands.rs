@@ -4,6 +4,7 @@ mod baked;
 mod interrupted;
 mod machine;
 mod made;
+mod strangers;
 mod training;
 
 use ctsn_core::file::{Tensor, Tensors};
