@@ -75,6 +75,9 @@ pub(super) fn fit_beside(outside: &Outside, garment: Garment, source: Source) ->
     let (mut garment, source, mut mended) = mend::mend(garment, source);
     let mut findings = Findings::default();
     mend::place(outside, &mut garment, &source, &mut mended, &mut findings);
+    // What is lifted or smoothed may leave a sliver where cloth was folded.
+    let (mut garment, source, again) = mend::mend(garment, source);
+    mended.extend(again);
     if findings.errors.is_empty() {
         hold::hold(outside, &mut garment, &source, &mut mended, &mut findings);
         let Findings { errors, warnings } = check_beside(outside, &garment, &source);
@@ -84,7 +87,10 @@ pub(super) fn fit_beside(outside: &Outside, garment: Garment, source: Source) ->
     let Findings { errors, warnings } = findings;
     match errors.is_empty() {
         true => Ok(Fitted { garment, mended, warnings }),
-        false => Err(Error::Garment(errors.join("\n  "))),
+        false => {
+            let said = mended.iter().map(|mend| format!("\n  mended: {mend}"));
+            Err(Error::Garment(errors.join("\n  ") + &said.collect::<String>()))
+        }
     }
 }
 

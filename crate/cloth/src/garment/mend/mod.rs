@@ -20,8 +20,9 @@ use patch::Patch;
 pub(super) fn mend(garment: Garment, source: Source) -> (Garment, Source, Vec<String>) {
     let mut patch = Patch::new(&garment, &source);
     let mut said = Vec::new();
-    slivers::mend(&mut patch, &mut said);
     faces::remove_copies(&mut patch, &mut said);
+    faces::split(&mut patch, &mut said);
+    slivers::mend(&mut patch, &mut said);
     faces::split(&mut patch, &mut said);
     faces::wind(&mut patch, &mut said);
     holes::fill(&mut patch, &mut said);

@@ -135,10 +135,15 @@ fn tight_cloth_is_lifted_and_crossed_cloth_smoothed_apart() {
     let found = mended(&SKIRT, tight, &["lifted out of the body"]);
     rehearse(&PERSON, &found, 0.0).expect("a drape");
     let crossed = |mesh: &mut Mesh| {
-        let [a, b, _] = mesh.triangles[middle(mesh)].map(|v| v as usize);
-        mesh.positions.swap(a, b);
-        let out = mesh.positions[a].with_y(0.0).normalize();
-        mesh.positions[a] += 0.01 * out;
+        // A corner folded far over the face beyond, whose own corner is drawn through it.
+        let [a, b, c] = mesh.triangles[middle(mesh)];
+        let beyond = mesh.triangles.iter().find(|t| t.contains(&b) && t.contains(&c) && !t.contains(&a)).unwrap();
+        let far = *beyond.iter().find(|v| ![b, c].contains(v)).unwrap() as usize;
+        let side = 0.5 * (mesh.positions[b as usize] + mesh.positions[c as usize]);
+        let out = side.with_y(0.0).normalize();
+        mesh.positions[far] += 0.03 * out;
+        let corner = &mut mesh.positions[a as usize];
+        *corner += 3.5 * (side - *corner) + 0.01 * out;
     };
     let found = mended(&SKIRT, crossed, &["crossed", "0 are left"]);
     assert!(
