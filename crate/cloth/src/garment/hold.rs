@@ -1,5 +1,5 @@
-//! What holds a garment up: shoulders, backs and heads that it lies on, or springs. Where nothing does and nobody pinned it,
-//! the highest opening around the body is taken for its waistband; what has none would fall, and is said to.
+//! What holds a garment up: shoulders, backs and heads that it lies on, or springs. Where nothing does and nobody
+//! pinned it, the highest opening around the body is taken for its waistband; what has none would fall, and is said to.
 
 use super::check::{Findings, Outside, Place, list};
 use ctsn_rig::gltf::Source;

@@ -16,8 +16,9 @@ use std::path::{Path, PathBuf};
 ///
 /// --check reads a garment of your own, mends what can be mended and says so: slivers, duplicated faces, crowded edges,
 /// faces that look the other way, small holes, cloth inside the body or through itself; a waistband that nobody pinned
-/// is found. What cannot be mended it says with the file's vertex numbers: scale, place, a garment that would fall. Then
-/// it hangs the garment, as every simulation begins. `simulate` and `bake` do the same with it; the file stays as it is.
+/// is found. What cannot be mended it says with the file's vertex numbers: scale, place, a garment that would fall.
+/// Then it hangs the garment, as every simulation begins. `simulate` and `bake` do the same with it; the file stays as
+/// it is.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// Rigged character (glTF)

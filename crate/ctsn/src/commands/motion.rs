@@ -32,8 +32,8 @@ pub struct Arguments {
 #[derive(clap::Args)]
 pub struct Joints {
     /// Which joints are which parts of the body, where they are not read as they should be: a JSON file such as
-    /// {"LeftArm": "bone.017", "LeftForeArm": "bone.018"}. Parts have the names of Mixamo's joints; an animal's legs are
-    /// LeftBackUpLeg, LeftBackLeg, LeftBackFoot, LeftFrontUpLeg …
+    /// {"LeftArm": "bone.017", "LeftForeArm": "bone.018"}. Parts have the names of Mixamo's joints; an animal's legs
+    /// are LeftBackUpLeg, LeftBackLeg, LeftBackFoot, LeftFrontUpLeg …
     #[arg(long, value_name = "MAP.json")]
     joints: Option<PathBuf>,
 }

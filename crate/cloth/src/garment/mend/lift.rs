@@ -83,8 +83,8 @@ fn free(outside: &Outside, garment: &mut Garment, source: &Source, said: &mut Ve
     }
 }
 
-/// Moves what is deeper than `deep` out until it is `clear` of the body, and its neighbours by half as much, theirs by a
-/// quarter.
+/// Moves what is deeper than `deep` out until it is `clear` of the body, and its neighbours by half as much, theirs by
+/// a quarter.
 fn lift(
     places: &[Place],
     deep: f64,

@@ -1,5 +1,6 @@
-//! What can be mended is mended before anything is refused: faces, winding, small holes, cloth inside the body or through
-//! itself. Each mend is said with counts and places. A sound garment comes back bit by bit as it was. simulation.md §4.3.
+//! What can be mended is mended before anything is refused: faces, winding, small holes, cloth inside the body or
+//! through itself. Each mend is said with counts and places. A sound garment comes back bit by bit as it was.
+//! simulation.md §4.3.
 
 mod faces;
 mod holes;

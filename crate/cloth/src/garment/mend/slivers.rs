@@ -1,5 +1,5 @@
-//! Faces so thin that their shape is rounding error: a short side is closed; a corner on a long side is let into the face
-//! beyond it, which mends T-junctions too.
+//! Faces so thin that their shape is rounding error: a short side is closed; a corner on a long side is let into the
+//! face beyond it, which mends T-junctions too.
 
 use super::at;
 use super::patch::{Face, Patch};

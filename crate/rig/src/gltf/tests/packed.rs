@@ -1,5 +1,5 @@
-//! Files as the web ships them: compressed, quantised, with pictures that nobody here decodes, with targets to morph to.
-//! Each is packed here from the tube and must read back as the tube.
+//! Files as the web ships them: compressed, quantised, with pictures that nobody here decodes, with targets to morph
+//! to. Each is packed here from the tube and must read back as the tube.
 
 use super::{RATE, edit, tube, tube_file};
 use crate::gltf::{read_character, read_garment};

@@ -1,5 +1,5 @@
-//! Buffer views in the coding of meshoptimizer: EXT_meshopt_compression, and KHR_meshopt_compression, its successor with
-//! a newer version of the vertex coding and a filter for colours.
+//! Buffer views in the coding of meshoptimizer: EXT_meshopt_compression, and KHR_meshopt_compression, its successor
+//! with a newer version of the vertex coding and a filter for colours.
 
 use super::{Container, size};
 use crate::gltf::Read;

@@ -1,5 +1,5 @@
-//! A file's JSON and buffers, with what extensions compress unpacked: after this every buffer view holds plain bytes, and
-//! nothing else knows that the file was compressed. glTF 2.0 §3.6.1, §4 (GLB).
+//! A file's JSON and buffers, with what extensions compress unpacked: after this every buffer view holds plain bytes,
+//! and nothing else knows that the file was compressed. glTF 2.0 §3.6.1, §4 (GLB).
 
 mod draco;
 mod meshopt;
