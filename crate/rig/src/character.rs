@@ -3,6 +3,7 @@
 
 use crate::{Mesh, SkinnedMesh};
 use glam::{DAffine3, DVec2, DVec3};
+use std::collections::BTreeMap;
 
 /// Joint world transforms `G_j` of one pose, one per joint of the [`Character`], in metres.
 pub type Pose = Vec<DAffine3>;
@@ -57,6 +58,9 @@ pub struct Character {
     pub clips: Vec<Clip>,
     /// Metres per unit of the file it came from (0.01 for a file in centimetres).
     pub metres_per_unit: f64,
+    /// Joints that the file, or whoever runs us, says to be parts of a body: `Hips`, `LeftArm`, … Mostly empty: then
+    /// they are found by names and places.
+    pub parts: BTreeMap<String, usize>,
 }
 
 /// A garment: the cloth mesh in the canonical pose's space, and what is drawn of it.

@@ -60,6 +60,7 @@ mod tests {
             surface: Surface::default(),
             clips: Vec::new(),
             metres_per_unit: 1.0,
+            parts: Default::default(),
         };
         let frame = |turn: f64| {
             let bend = DAffine3::from_rotation_translation(DQuat::from_rotation_x(turn), DVec3::Y);

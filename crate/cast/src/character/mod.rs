@@ -64,6 +64,7 @@ pub fn build(figure: &Figure) -> Character {
         surface: Surface::default(),
         clips: vec![],
         metres_per_unit: 1.0,
+        parts: Default::default(),
     };
     for shell in 0..=lofts.iter().map(|loft| loft.shell).max().unwrap_or(0) {
         let own: Vec<Loft> = lofts.iter().filter(|loft| loft.shell == shell).cloned().collect();

@@ -9,7 +9,9 @@ mod drape;
 mod fall;
 mod figure;
 mod hang;
+mod hold;
 mod kind;
+mod mend;
 mod opening;
 mod pattern;
 mod quality;
@@ -34,7 +36,7 @@ mod obstacle_test;
 #[cfg(test)]
 mod test;
 
-pub use check::{Findings, check, load};
+pub use check::{Findings, Fitted, check, fit, load, rehearse};
 pub use drape::{Rest, drape};
 pub use kind::Kind;
 pub use quality::{Quality, quality};

@@ -48,6 +48,7 @@ pub(super) fn character(bones: &[Bone]) -> Character {
         surface: Surface::default(),
         clips: Vec::new(),
         metres_per_unit: 1.0,
+        parts: Default::default(),
     };
     for (index, &(_, _, from, to, radius)) in bones.iter().enumerate() {
         capsule(&mut character, index, from.into(), to.into(), radius);

@@ -37,3 +37,6 @@ pub use outcome::{Outcome, Status};
 pub use outer_skin::{covering, outer_skin};
 pub use settings::Settings;
 pub use simulator::Simulator;
+
+pub(crate) use neighbourhood::Elements;
+pub(crate) use untangle::untangle;

@@ -17,7 +17,7 @@ const SLACK: f64 = 0.002;
 /// The cloth's elements, each vertex and edge owned by one triangle (Curtis et al. 2008, representative triangles): a
 /// search for close triangles then finds each close pair of elements once.
 #[derive(Clone, Debug)]
-pub(super) struct Elements {
+pub(crate) struct Elements {
     pub triangles: Vec<[u32; 3]>,
     /// Vertices owned by a triangle [t].
     vertices: Vec<Vec<u32>>,

@@ -14,7 +14,7 @@ const WIDER: usize = 6;
 const STEPS: usize = 3;
 
 /// Smooths `x` [n] where triangles cross, until none do; whether none do.
-pub(super) fn untangle(elements: &Elements, rings: &Graph<Vec<u32>>, x: &mut [DVec3]) -> bool {
+pub(crate) fn untangle(elements: &Elements, rings: &Graph<Vec<u32>>, x: &mut [DVec3]) -> bool {
     for round in 0..ROUNDS {
         let crossings = elements.crossings(x);
         if crossings.is_empty() {

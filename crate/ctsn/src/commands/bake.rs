@@ -1,8 +1,8 @@
 //! `ctsn bake`: simulate, train and evaluate in one go.
 
-use super::{evaluate, file_name, garment, simulate, train};
+use super::{evaluate, file_name, garment, motion, simulate, train};
 use anyhow::{Context, Result, bail, ensure};
-use ctsn_cast::motion;
+use ctsn_cast::motion::clips;
 use ctsn_cloth::garment::Cut;
 use ctsn_rig::Character;
 use ctsn_rig::file::{read, write};
@@ -33,6 +33,8 @@ pub struct Arguments {
     /// Model file to write (safetensors)
     #[arg(short, long)]
     output: PathBuf,
+    #[command(flatten)]
+    joints: motion::Joints,
     /// Learn from the character's own clips alone, not from generated motion too
     #[arg(long)]
     own_motion: bool,
@@ -156,8 +158,10 @@ fn moving(arguments: &Arguments) -> Result<Character> {
     if arguments.own_motion {
         return Ok(character);
     }
-    match motion::clips(&character, options.rate) {
+    arguments.joints.tell(&mut character)?;
+    match clips(&character, options.rate) {
         Ok(clips) => {
+            motion::say(&character);
             let known: Vec<String> = character.clips.iter().map(|clip| clip.name.clone()).collect();
             character.clips.extend(clips.into_iter().filter(|clip| !known.contains(&clip.name)));
             println!(

@@ -1,7 +1,8 @@
 //! `ctsn garment`: a garment for any character.
 
-use anyhow::Result;
-use ctsn_cloth::garment::{Cut, Rest, default_kind, drape, load, shell};
+use super::simulate::PINCHED;
+use anyhow::{Context, Result};
+use ctsn_cloth::garment::{Cut, Rest, default_kind, drape, load, rehearse, shell};
 use ctsn_rig::Garment;
 use ctsn_rig::gltf;
 use std::path::{Path, PathBuf};
@@ -13,9 +14,11 @@ use std::path::{Path, PathBuf};
 /// pinned to the body: the vertex attribute _PIN (scalar, 1 = pinned) marks their vertices. A garment of your own may
 /// have it too.
 ///
-/// --check reads a garment of your own and says what is wrong with it: scale, fit, cloth inside the body, inside out,
-/// non-manifold edges, duplicated faces, holes, loose pieces, with the file's vertex numbers. `simulate` and `bake`
-/// check the same.
+/// --check reads a garment of your own, mends what can be mended and says so: slivers, duplicated faces, crowded edges,
+/// faces that look the other way, small holes, cloth inside the body or through itself; a waistband that nobody pinned
+/// is found. What cannot be mended it says with the file's vertex numbers: scale, place, a garment that would fall.
+/// Then it hangs the garment, as every simulation begins. `simulate` and `bake` do the same with it; the file stays as
+/// it is.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// Rigged character (glTF)
@@ -37,16 +40,22 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     arguments.output.as_ref().map_or(Ok(()), |output| make(&arguments.character, &arguments.cut, output))
 }
 
-/// Says what is wrong with a garment; fails on what makes it unusable.
+/// Says what is wrong with a garment and what of it is mended; fails on what makes it unusable.
 fn check(character: &Path, garment: &Path) -> Result<()> {
     let character = gltf::read_character(character, 1.0)?;
-    let (cloth, warnings) = load(garment, &character)?;
-    warnings.iter().for_each(|warning| println!("{warning}"));
-    let (vertices, pins) = (cloth.mesh.positions.len(), cloth.pins.len());
+    let fitted = load(garment, &character)?;
+    fitted.mended.iter().for_each(|mend| println!("mended: {mend}"));
+    fitted.warnings.iter().for_each(|warning| println!("{warning}"));
+    let moved = rehearse(&character, &fitted.garment, PINCHED).with_context(|| garment.display().to_string())?;
+    let Garment { mesh, pins, .. } = &fitted.garment;
     println!(
-        "{}: {vertices} vertices, {pins} pins; fit to be simulated, {} warnings",
+        "{}: {} vertices, {} pins; fit to be simulated, {} mended, {} warnings; hung, it moves by up to {:.0} mm",
         garment.display(),
-        warnings.len()
+        mesh.positions.len(),
+        pins.len(),
+        fitted.mended.len(),
+        fitted.warnings.len(),
+        1e3 * moved
     );
     Ok(())
 }

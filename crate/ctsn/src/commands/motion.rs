@@ -1,18 +1,25 @@
 //! `ctsn motion`: generated clips for a character.
 
-use anyhow::Result;
+use anyhow::{Context, Result, anyhow, bail};
 use ctsn_cast::motion;
-use ctsn_rig::gltf;
-use std::path::PathBuf;
+use ctsn_cast::motion::reading::{Reading, parts};
+use ctsn_rig::file::read;
+use ctsn_rig::{Character, gltf};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 
 /// Give a character generated clips in place of its own
 ///
-/// The kind of body is told by its joint names, with or without a prefix such as `mixamorig:`. If none fits, the error
-/// says which joints were wanted.
+/// Which joint is which part of a body is read from the bones a VRM file names, from the names of the common families
+/// (Mixamo, Unreal, VRoid, Rigify, Biped, …), and where names do not tell, from the skeleton itself: limbs are mirrored
+/// pairs of chains, legs stand on the floor. What was taken for what is printed. If nothing fits, the error says what
+/// the skeleton is nearest to and what it lacks.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// The character (glTF)
     character: PathBuf,
+    #[command(flatten)]
+    joints: Joints,
     /// Poses per second of the clips
     #[arg(long, default_value_t = motion::RATE)]
     rate: f64,
@@ -21,9 +28,53 @@ pub struct Arguments {
     output: PathBuf,
 }
 
+/// Parts of a body that are told.
+#[derive(clap::Args)]
+pub struct Joints {
+    /// Which joints are which parts of the body, where they are not read as they should be: a JSON file such as
+    /// {"LeftArm": "bone.017", "LeftForeArm": "bone.018"}. Parts have the names of Mixamo's joints; an animal's legs
+    /// are LeftBackUpLeg, LeftBackLeg, LeftBackFoot, LeftFrontUpLeg …
+    #[arg(long, value_name = "MAP.json")]
+    joints: Option<PathBuf>,
+}
+
+impl Joints {
+    /// Notes the told parts in the character.
+    pub fn tell(&self, character: &mut Character) -> Result<()> {
+        let Some(path) = &self.joints else { return Ok(()) };
+        tell(path, character).with_context(|| path.display().to_string())
+    }
+}
+
+fn tell(path: &Path, character: &mut Character) -> Result<()> {
+    let map: BTreeMap<String, String> = serde_json::from_slice(&read(path)?)
+        .map_err(|error| anyhow!("wanted a JSON object of parts and names of joints: {error}"))?;
+    for (part, name) in map {
+        if !parts().contains(&part.as_str()) {
+            bail!("{part}: wanted one of the parts {}", parts().join(", "));
+        }
+        let joint = character.joint(&name).ok_or_else(|| {
+            let names: Vec<&str> = character.joints.iter().map(|joint| joint.name.as_str()).collect();
+            anyhow!("{part}: wanted a joint of the character, found {name:?}; it has {}", names.join(", "))
+        })?;
+        character.parts.insert(part, joint);
+    }
+    Ok(())
+}
+
+/// Says which joints were taken for which parts, where a body was read.
+pub fn say(character: &Character) {
+    let (kind, reading) = Reading::nearest(character);
+    if reading.missing().is_empty() {
+        println!("a body with {kind}: {reading}");
+    }
+}
+
 pub fn run(arguments: &Arguments) -> Result<()> {
     let mut character = gltf::read_character(&arguments.character, motion::RATE)?;
+    arguments.joints.tell(&mut character)?;
     character.clips = motion::clips(&character, arguments.rate)?;
+    say(&character);
     gltf::write_character(&arguments.output, &character, &gltf::Appearance::default())?;
     super::list_clips(&arguments.output, &character);
     Ok(())

@@ -2,10 +2,10 @@
 
 use super::{bar, file_name, model, remaining};
 use anyhow::{Result, bail};
-use ctsn_cloth::garment;
+use ctsn_cloth::garment::{self, Fitted};
 use ctsn_cloth::simulate::{Material, Settings};
-use ctsn_rig::Character;
 use ctsn_rig::gltf;
+use ctsn_rig::{Character, Garment};
 use ctsn_train::dataset::Dataset;
 use ctsn_train::ground_truth::{self, Kind, Request, Run, Shard};
 use ctsn_train::report::Report;
@@ -44,6 +44,9 @@ pub struct Arguments {
 /// Poses per second of the clips, where nothing else is asked for.
 const RATE: f64 = 10.0;
 
+/// Share of the vertices that may lie where the body passes into itself.
+pub const PINCHED: f64 = 0.03;
+
 /// Which poses, of what cloth.
 #[derive(clap::Args, Clone)]
 pub struct Options {
@@ -71,7 +74,7 @@ pub struct Options {
     pub from: Option<PathBuf>,
     /// Keep poses with at most this share of the vertices inside the body where it passes into itself (an upper arm
     /// into the chest, say): no place is outside there. With 0, few poses are kept of wide motion on slim limbs
-    #[arg(long, value_name = "SHARE", default_value_t = 0.03)]
+    #[arg(long, value_name = "SHARE", default_value_t = PINCHED)]
     pub pinched: f64,
 }
 
@@ -83,8 +86,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
 pub fn along(character: &Character, arguments: &Arguments, until: Option<Instant>) -> Result<()> {
     let Arguments { options, output, shard, .. } = arguments;
     let material = Material::named(&options.material)?;
-    let (garment, warnings) = garment::load(&arguments.garment, character)?;
-    warnings.iter().for_each(|warning| eprintln!("  {}: {warning}", arguments.garment.display()));
+    let garment = fitted(&arguments.garment, character)?;
     let teacher = options.from.as_deref().map(model).transpose()?;
     let names = [file_name(&arguments.character), file_name(&arguments.garment)];
     println!("{} on {}: {} vertices", names[1], names[0], garment.mesh.positions.len());
@@ -112,12 +114,19 @@ pub fn along(character: &Character, arguments: &Arguments, until: Option<Instant
     Ok(())
 }
 
+/// Reads a garment, and says what was mended and what may be wrong.
+fn fitted(path: &Path, character: &Character) -> Result<Garment> {
+    let Fitted { garment, mended, warnings } = garment::load(path, character)?;
+    mended.iter().for_each(|mend| eprintln!("  {}: mended: {mend}", path.display()));
+    warnings.iter().for_each(|warning| eprintln!("  {}: {warning}", path.display()));
+    Ok(garment)
+}
+
 /// The frames of a character's clips in a garment of cotton, for a training without simulated poses.
 pub fn unsimulated(character: &Path, garment: &Path) -> Result<Dataset> {
     let names = [file_name(character), file_name(garment)];
     let character = gltf::read_character(character, RATE)?;
-    let (cloth, warnings) = garment::load(garment, &character)?;
-    warnings.iter().for_each(|warning| eprintln!("  {}: {warning}", garment.display()));
+    let cloth = fitted(garment, &character)?;
     println!("{} on {}: {} vertices; draping it", names[1], names[0], cloth.mesh.positions.len());
     let request = Request {
         character: &character,

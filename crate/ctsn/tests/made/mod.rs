@@ -100,6 +100,7 @@ fn character() -> Character {
         surface: Default::default(),
         clips,
         metres_per_unit: 1.0,
+        parts: Default::default(),
     }
 }
 

@@ -4,6 +4,7 @@ use super::Read;
 use super::file::File;
 use ::gltf::image::Source;
 use ::gltf::material::PbrMetallicRoughness;
+use ::gltf::texture::TextureTransform;
 use glam::DVec2;
 use image::RgbImage;
 
@@ -32,6 +33,8 @@ impl<'a> Painter<'a> {
         let [red, green, blue, _] = material.base_color_factor();
         let plain = [red, green, blue].map(|channel| if channel.is_finite() { channel.clamp(0.0, 1.0) } else { 1.0 });
         let texture = material.base_color_texture().filter(|_| !uv.is_empty());
+        let place = texture.as_ref().and_then(|texture| texture.texture_transform());
+        let place = |uv: DVec2| place.as_ref().map_or(uv, |place| placed(place, uv));
         let picture = texture.and_then(|texture| self.image(texture.texture().source()));
         let Some(picture) = picture else { return vec![plain; vertices] };
         let mut sums = vec![([0.0; 3], 0.0); vertices];
@@ -39,7 +42,7 @@ impl<'a> Painter<'a> {
             let centre = triangle.iter().map(|&corner| uv[corner as usize]).sum::<DVec2>() / 3.0;
             for &corner in triangle {
                 let (sum, count) = &mut sums[corner as usize];
-                let texel = texel(picture, uv[corner as usize].lerp(centre, 0.25));
+                let texel = texel(picture, place(uv[corner as usize].lerp(centre, 0.25)));
                 (0..3).for_each(|channel| sum[channel] += plain[channel] * texel[channel]);
                 *count += 1.0;
             }
@@ -60,6 +63,13 @@ fn decode(file: &File, image: &::gltf::Image) -> Read<RgbImage> {
     };
     let picture = picture.map_err(|error| error.to_string())?.to_rgb8();
     if picture.is_empty() { Err("an image without pixels".to_string()) } else { Ok(picture) }
+}
+
+/// Texture coordinates moved, turned and scaled. KHR_texture_transform.
+fn placed(place: &TextureTransform, uv: DVec2) -> DVec2 {
+    let [offset, scale] = [place.offset(), place.scale()].map(|pair| DVec2::from(pair.map(f64::from)));
+    let turned = DVec2::from_angle(-f64::from(place.rotation())).rotate(uv * scale);
+    turned + offset
 }
 
 /// Nearest texel of the repeated texture, linear RGB.

@@ -1,16 +1,16 @@
 //! A glTF file in memory. Accessors are decoded here, not by the `gltf` crate's readers: those trust type, stride and
 //! count, and panic on files that lie about them. glTF 2.0 §3.6 (buffers), §3.6.2.3 (sparse), §3.6.2.2 (normalised).
 
-use super::Read;
+use super::unpack::Container;
+use super::{Read, vrm};
 use crate::Error;
-use ::gltf::Glb;
 use ::gltf::accessor::{DataType, Dimensions, sparse::IndexType};
 use ::gltf::buffer::{self, Data, View};
 use ::gltf::json::Root;
 use ::gltf::json::animation::VALID_PROPERTIES;
 use ::gltf::json::image::MimeType;
 use ::gltf::json::validation::Checked;
-use ::gltf::{Accessor, Document, Gltf, Semantic};
+use ::gltf::{Accessor, Document, Semantic};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -18,15 +18,14 @@ use std::path::{Path, PathBuf};
 /// Most components one accessor may hold: 2^27 f64 are 1 GiB, far more than any character needs.
 const MOST_COMPONENTS: usize = 1 << 27;
 
-/// Required extensions that change only how a surface looks, or that the decoding below covers.
-const UNDERSTOOD: [&str; 4] = ["KHR_materials_", "KHR_texture_", "KHR_mesh_quantization", "KHR_lights_punctual"];
-
 /// A parsed file: its document, and the bytes its buffers hold.
 pub(super) struct File {
     pub document: Document,
     /// Accessor of `_PIN` by mesh and primitive: the `gltf` crate drops the attributes it does not know.
     pub pins: BTreeMap<(usize, usize), usize>,
-    buffers: Vec<Data>,
+    /// Node of each part of a body that the file names, see [`super::vrm`].
+    pub parts: BTreeMap<String, usize>,
+    buffers: Vec<Vec<u8>>,
     folder: PathBuf,
 }
 
@@ -39,24 +38,12 @@ impl File {
     }
 
     pub fn parse(bytes: &[u8], folder: PathBuf) -> Read<File> {
-        let Gltf { document, blob } = parse_unchecked(bytes)?;
-        let pins = pins(bytes)?;
-        let mut json = document.into_json();
-        json.extensions_required.retain(|name| !UNDERSTOOD.iter().any(|known| name.starts_with(known)));
-        if !json.extensions_required.is_empty() {
-            let wanted = json.extensions_required.join(", ");
-            return Err(format!("needs glTF extensions that are not supported: {wanted}; export without them"));
-        }
+        let Container { json, buffers } = Container::read(bytes, &folder)?;
+        let (pins, parts) = (pins(&json), vrm::parts(&json));
+        let mut json: Root = serde_json::from_value(json).map_err(|error| format!("not a glTF: {error}"))?;
         mend(&mut json)?;
         let document = Document::from_json(json).map_err(|error| format!("not a valid glTF: {error}"))?;
-        for source in document.buffers().map(|buffer| buffer.source()) {
-            if let buffer::Source::Uri(uri) = source {
-                check_uri(uri)?;
-            }
-        }
-        let buffers = ::gltf::import_buffers(&document, Some(&folder), blob)
-            .map_err(|error| format!("its buffers cannot be read: {error}"))?;
-        Ok(File { document, pins, buffers, folder })
+        Ok(File { document, pins, parts, buffers, folder })
     }
 
     /// All components of an accessor, finite; normalised integers are mapped to [0, 1] or [-1, 1]. `what` names the
@@ -121,7 +108,7 @@ impl File {
 
     /// The bytes of a buffer view.
     pub fn view(&self, view: &View) -> Read<&[u8]> {
-        let bytes = self.buffers.get(view.buffer().index()).map_or(&[][..], |data| &data.0[..]);
+        let bytes = self.buffers.get(view.buffer().index()).map_or(&[][..], Vec::as_slice);
         let end = view.offset().checked_add(view.length());
         end.and_then(|end| bytes.get(view.offset()..end)).ok_or_else(|| {
             let (from, length) = (view.offset(), view.length());
@@ -136,20 +123,6 @@ impl File {
         let data = Data::from_source(buffer::Source::Uri(uri), Some(&self.folder));
         data.map(|data| data.0).map_err(|error| format!("{uri}: {error}"))
     }
-}
-
-/// Parses without validation. Checks the stated length of a GLB first: the `gltf` crate subtracts its header from that.
-fn parse_unchecked(bytes: &[u8]) -> Read<Gltf> {
-    if let Some(header) = bytes.strip_prefix(b"glTF") {
-        let stated = header.get(4..8).map(|length| length.iter().rev().fold(0, |sum, &byte| sum << 8 | byte as usize));
-        if stated.is_none_or(|length| length < 12 || length > bytes.len()) {
-            let stated = stated.map_or("no length".to_string(), |length| format!("{length} bytes"));
-            return Err(format!("a truncated GLB: its header states {stated}, the file has {} bytes", bytes.len()));
-        }
-    } else if bytes.iter().find(|byte| !byte.is_ascii_whitespace()) != Some(&b'{') {
-        return Err("not a glTF: it starts neither with the GLB header `glTF` nor with a JSON object".to_string());
-    }
-    Gltf::from_slice_without_validation(bytes).map_err(|error| format!("not a glTF: {error}"))
 }
 
 /// Refuses references that the `gltf` crate does not validate and panics on. Fills in what the crate demands and
@@ -191,27 +164,19 @@ fn mend(json: &mut Root) -> Read<()> {
     Ok(())
 }
 
-/// Accessor of `_PIN` by mesh and primitive, from the JSON of a file that is known to parse.
-fn pins(bytes: &[u8]) -> Read<BTreeMap<(usize, usize), usize>> {
-    let refuse = |error: &dyn std::fmt::Display| format!("not a glTF: {error}");
-    let json: Value = match bytes.starts_with(b"glTF") {
-        true => {
-            let glb = Glb::from_slice(bytes).map_err(|error| refuse(&error))?;
-            serde_json::from_slice(&glb.json).map_err(|error| refuse(&error))?
-        }
-        false => serde_json::from_slice(bytes).map_err(|error| refuse(&error))?,
-    };
+/// Accessor of `_PIN` by mesh and primitive.
+fn pins(json: &Value) -> BTreeMap<(usize, usize), usize> {
     let list = |value: &Value, key: &str| value[key].as_array().cloned().unwrap_or_default();
-    let meshes = list(&json, "meshes").into_iter().enumerate();
+    let meshes = list(json, "meshes").into_iter().enumerate();
     let primitives = meshes.flat_map(|(mesh, value)| {
         list(&value, "primitives").into_iter().enumerate().map(move |(at, primitive)| ((mesh, at), primitive))
     });
     let accessor = |primitive: &Value| primitive["attributes"]["_PIN"].as_u64().map(|index| index as usize);
-    Ok(primitives.filter_map(|(place, primitive)| Some((place, accessor(&primitive)?))).collect())
+    primitives.filter_map(|(place, primitive)| Some((place, accessor(&primitive)?))).collect()
 }
 
 /// Refuses percent-encodings that are not UTF-8, on which the `gltf` crate panics.
-fn check_uri(uri: &str) -> Read<()> {
+pub(super) fn check_uri(uri: &str) -> Read<()> {
     let mut bytes = Vec::new();
     let mut rest = uri.as_bytes();
     while let Some((&first, tail)) = rest.split_first() {

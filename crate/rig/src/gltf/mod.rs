@@ -7,6 +7,8 @@ mod file;
 mod nodes;
 mod part;
 mod skeleton;
+mod unpack;
+mod vrm;
 mod weld;
 mod write;
 
@@ -32,8 +34,8 @@ type Read<T> = std::result::Result<T, String>;
 ///
 /// All skinned meshes become one body. The glTF skin with most vertices sets the canonical space. A vertex without
 /// weights takes those of the nearest vertex that has some, or follows the hip when none has. A body that faces inwards
-/// is turned. Meshes without a skin, morph targets and animations that move no joint are left out. A file without clips
-/// is accepted, see [`Character::clip`].
+/// is turned. Morph targets are taken as exported: by the weights of their mesh. Meshes without a skin and animations
+/// that move no joint are left out. A file without clips is accepted, see [`Character::clip`].
 pub fn read_character(path: &Path, rate: f64) -> Result<Character> {
     let file = File::open(path)?;
     character(&file, rate).map_err(|reason| Error::File { path: path.into(), reason })
@@ -75,6 +77,7 @@ fn character(file: &File, rate: f64) -> Read<Character> {
         surface: welded.surface,
         clips: clips(file, &nodes, &skeleton, rate, metres_per_unit)?,
         metres_per_unit,
+        parts: skeleton.parts(file),
     })
 }
 

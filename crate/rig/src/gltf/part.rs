@@ -1,5 +1,6 @@
 //! The triangles of the mesh nodes, as the file has them: vertices split at seams, skin weights per vertex.
-//! glTF 2.0 §3.7.2 (primitives), §3.7.3.3 (skinned attributes). Morph targets are left at their base.
+//! glTF 2.0 §3.7.2 (primitives), §3.7.3.3 (skinned attributes). Morph targets are taken by the weights of
+//! their mesh: as exported.
 
 use super::Read;
 use super::colour::Painter;
@@ -41,9 +42,11 @@ pub(super) fn read(file: &File) -> Read<Vec<Part>> {
             let pins = mesh.iter().find_map(|mesh| file.pins.get(&(mesh.index(), primitive.index())));
             let place = |reason| format!("mesh node {} ({}): {reason}", node.index(), node.name().unwrap_or("unnamed"));
             let skin = node.skin().map(|skin| (skin.index(), skin.joints().count()));
-            if let Some(part) = read_primitive(file, &primitive, node.index(), skin, &mut painter).map_err(place)? {
-                let pinned = pinned(file, pins, part.positions.len()).map_err(place)?;
-                parts.push(Part { pinned, ..part });
+            let weights = node.weights().or(mesh.iter().find_map(|mesh| mesh.weights())).unwrap_or_default();
+            if let Some(mut part) = read_primitive(file, &primitive, node.index(), skin, &mut painter).map_err(place)? {
+                part.pinned = pinned(file, pins, part.positions.len()).map_err(place)?;
+                morph(file, &primitive, weights, &mut part.positions).map_err(place)?;
+                parts.push(part);
             }
         }
     }
@@ -90,6 +93,21 @@ fn read_primitive(
         triangles,
         colour,
     }))
+}
+
+/// Moves positions by Σ weight · displacement of the morph targets. glTF 2.0 §3.7.2.2.
+fn morph(file: &File, primitive: &Primitive, weights: &[f32], positions: &mut [DVec3]) -> Read<()> {
+    for (target, &weight) in primitive.morph_targets().zip(weights) {
+        let Some(accessor) = target.positions().filter(|_| weight != 0.0) else { continue };
+        if !weight.is_finite() {
+            return Err(format!("the weight of a morph target is {weight}, wanted a finite number"));
+        }
+        let moves = file.components(&accessor, Dimensions::Vec3, "morph target")?;
+        check_count("morph target", moves.len() / 3, positions.len(), false)?;
+        let moves = moves.chunks_exact(3).map(DVec3::from_slice);
+        positions.iter_mut().zip(moves).for_each(|(position, moved)| *position += f64::from(weight) * moved);
+    }
+    Ok(())
 }
 
 /// The attribute `_PIN`: pinned above one half. [v], or empty without it.

@@ -60,7 +60,8 @@ impl Skeleton {
             main,
             rest: nodes.worlds(&nodes.rest),
         };
-        skeleton.hip = skeleton.find_hip(parts)?;
+        let told = skeleton.parts(file).get("Hips").copied();
+        skeleton.hip = told.map_or_else(|| skeleton.find_hip(parts), Ok)?;
         Ok(Some(skeleton))
     }
 
@@ -113,6 +114,12 @@ impl Skeleton {
             joints.push(Joint { name: self.names[at].clone(), parent: self.parent[at], inverse_bind });
         }
         Ok(joints)
+    }
+
+    /// The joints that the file names as parts of a body.
+    pub fn parts(&self, file: &File) -> BTreeMap<String, usize> {
+        let joint = |node: &usize| self.nodes.iter().position(|joint| joint == node);
+        file.parts.iter().filter_map(|(part, node)| Some((part.clone(), joint(node)?))).collect()
     }
 
     /// World transforms of all nodes (file units) -> pose of the joints (metres).

@@ -178,6 +178,7 @@ impl Setup {
             surface: Drawn::default(),
             clips: Vec::new(),
             metres_per_unit: 1.0,
+            parts: Default::default(),
         })
     }
 }

@@ -24,6 +24,7 @@ fn scene() -> (Character, Garment) {
         surface: Surface::default(),
         clips: Vec::new(),
         metres_per_unit: 1.0,
+        parts: Default::default(),
     };
     let poses = vec![character.canonical_pose(); 2];
     character.clips.push(Clip { name: "still".to_owned(), rate: 7.3, poses });

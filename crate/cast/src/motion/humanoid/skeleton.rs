@@ -3,6 +3,7 @@
 
 use super::clear::Clearance;
 use super::posture::Posture;
+use crate::motion::reading::Reading;
 use crate::{Error, Result};
 use ctsn_rig::{Character, Pose};
 use glam::{DAffine3, DMat3, DQuat, DVec3};
@@ -57,13 +58,10 @@ struct Leg {
 }
 
 impl Humanoid {
-    /// Finds the joints by name, with or without a prefix such as `mixamorig:`.
+    /// Finds the joints by name or by place, see [`Reading`].
     pub fn new(character: &Character) -> Result<Humanoid> {
-        let plain = |name: &str| name.rsplit([':', '|']).next().unwrap_or(name).to_string();
-        let find = |wanted: &str| character.joints.iter().position(|joint| plain(&joint.name) == wanted);
-        let need = |wanted: &str| {
-            find(wanted).ok_or_else(|| Error::Character(format!("wanted a joint named {wanted} to move, found none")))
-        };
+        let reading = Reading::two_legs(character);
+        let (need, find) = (|part: &str| reading.need(part), |part: &str| reading.find(part));
         let bind = character.canonical_pose();
         let place = |joint: usize| bind[joint].translation;
         let floor = character.body.mesh.positions.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
@@ -86,8 +84,7 @@ impl Humanoid {
         let legs = [leg("Left")?, leg("Right")?];
         let arms = [arm("Left")?, arm("Right")?];
         let hips = need("Hips")?;
-        let chain = |names: &[&str]| names.iter().filter_map(|name| find(name)).collect::<Vec<usize>>();
-        let (spine, head) = (chain(&["Spine", "Spine1", "Spine2"]), chain(&["Neck", "Head"]));
+        let (spine, head) = (reading.spine(character), reading.neck_and_head(character));
         let leg_length = place(legs[0].upper).y - floor;
         let solid = [hips].into_iter().chain(legs.iter().flat_map(|leg| [leg.upper, leg.lower]));
         let solid: Vec<usize> = solid.chain(spine.iter().chain(&head).copied()).collect();

@@ -43,6 +43,7 @@ fn stick_figure() -> Character {
         surface: Surface::default(),
         clips: vec![],
         metres_per_unit: 1.0,
+        parts: Default::default(),
     }
 }
 
@@ -276,7 +277,10 @@ fn a_path_goes_through_its_keys() {
 #[test]
 fn a_skeleton_without_arms_is_refused_by_name() {
     let mut figure = stick_figure();
-    figure.joints[5].name = "tentacle".into();
+    for joint in 5..=7 {
+        figure.joints[joint].name = "lump".into();
+        figure.joints[joint].inverse_bind = figure.joints[2].inverse_bind;
+    }
     let message = clips(&figure, RATE).expect_err("no left arm").to_string();
     assert!(message.contains("LeftArm"), "{message}");
 }
@@ -290,5 +294,5 @@ fn a_leg_without_length_and_an_absurd_rate_are_refused() {
     );
     figure.joints[knee].inverse_bind = figure.joints[knee - 1].inverse_bind;
     let message = clips(&figure, RATE).expect_err("no thigh").to_string();
-    assert!(message.contains("Left leg"), "{message}");
+    assert!(message.contains("LeftUpLeg"), "{message}");
 }

@@ -4,15 +4,14 @@
 use super::leg::{Leg, limited};
 use super::stance::Stance;
 use crate::motion::bones::{Bones, Turns, euler, plain};
+use crate::motion::reading::Reading;
 use crate::{Error, Result};
 use ctsn_rig::{Character, Pose};
 use glam::{DQuat, DVec3};
 
-/// Names of a leg's upper, middle, ankle and toe joints without the side; the first found counts. Toes may be missing.
-const HIND: [&[&str]; 4] =
-    [&["BackUpLeg", "Leg01"], &["BackLeg", "Leg02"], &["BackFoot", "Foot01"], &["BackToes", "Foot02"]];
-const FORE: [&[&str]; 4] =
-    [&["FrontUpLeg", "UpperArm"], &["FrontLeg", "ForeArm"], &["FrontFoot", "Hand"], &["FrontToes"]];
+/// Parts of a leg without the side: upper, middle, ankle and toe joints. Toes may be missing.
+const HIND: [&str; 4] = ["BackUpLeg", "BackLeg", "BackFoot", "BackToes"];
+const FORE: [&str; 4] = ["FrontUpLeg", "FrontLeg", "FrontFoot", "FrontToes"];
 
 /// Share of the chest's turn that the neck keeps; share of the way from chest to neck that its lower joints turn.
 const STEADY: [f64; 2] = [0.4, 0.7];
@@ -39,43 +38,41 @@ pub struct Quadruped {
 }
 
 impl Quadruped {
-    /// Finds the joints by name.
+    /// Finds the joints by name or by place, see [`Reading`].
     pub fn new(character: &Character) -> Result<Quadruped> {
+        let reading = Reading::four_legs(character);
         let named = |wanted: &str| character.joints.iter().position(|joint| plain(&joint.name) == wanted);
         let starting = |stem: &str| -> Vec<usize> {
             (0..character.joints.len()).filter(|&j| plain(&character.joints[j].name).starts_with(stem)).collect()
         };
-        let need = |stem: &str, names: &[&str]| {
-            let found = names.iter().find_map(|name| named(&format!("{stem}{name}")));
-            found.ok_or_else(|| Error::Character(format!("wanted a joint named {stem}{}, found none", names[0])))
-        };
+        let or = |named: Vec<usize>, placed: Vec<usize>| if named.is_empty() { placed } else { named };
         let bones = Bones::new(character);
-        let hips = need("", &["Hips", "Hip"])?;
+        let (hips, head) = (reading.need("Hips")?, reading.need("Head")?);
         let low = character.body.mesh.positions.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
         let floor = if low.is_finite() { low } else { 0.0 };
-        let leg = |side: &str, names: &[&[&str]; 4]| -> Result<Leg> {
-            let [upper, lower, foot] = [need(side, names[0])?, need(side, names[1])?, need(side, names[2])?];
-            let toes = need(side, names[3]).ok();
+        let leg = |side: &str, names: &[&str; 4]| -> Result<Leg> {
+            let part = |index: usize| format!("{side}{}", names[index]);
+            let need = |index: usize| reading.need(&part(index));
+            let [upper, lower, foot] = [need(0)?, need(1)?, need(2)?];
             let root = bones.parents[upper].unwrap_or(hips);
-            let leg = Leg::measure(&bones, [root, upper, lower, foot], toes, floor);
-            leg.ok_or_else(|| {
-                Error::Character(format!("wanted a leg with bones longer than zero at {side}{}", names[0][0]))
-            })
+            let leg = Leg::measure(&bones, [root, upper, lower, foot], reading.find(&part(3)), floor);
+            leg.ok_or_else(|| Error::Character(format!("wanted a leg with bones longer than zero at {}", part(0))))
         };
         let legs = vec![leg("Left", &HIND)?, leg("Right", &HIND)?, leg("Left", &FORE)?, leg("Right", &FORE)?];
         let leg_length = legs[0].hip().y - floor;
         if !(leg_length > 1e-6 && leg_length.is_finite()) {
             return Err(Error::Character(format!("wanted hips above the floor, found them {leg_length} m over it")));
         }
-        let blade = |leg: &Leg| Some(leg.root).filter(|&j| plain(&character.joints[j].name).ends_with("Shoulder"));
+        let chest = reading.chest(character);
+        let blade = |leg: &Leg| Some(leg.root).filter(|&root| chest.is_some_and(|chest| root != chest));
         let blades = [blade(&legs[2]), blade(&legs[3])];
         let ears = [named("LeftEar"), named("RightEar")].into_iter().flatten().collect();
         Ok(Quadruped {
             hips,
-            spine: starting("Spine"),
-            neck: starting("Neck"),
-            head: need("", &["Head"])?,
-            tail: starting("Tail"),
+            spine: or(starting("Spine"), reading.spine(character)),
+            neck: or(starting("Neck"), reading.neck(character)),
+            head,
+            tail: or(starting("Tail"), reading.tail(character)),
             ears,
             blades,
             legs,

@@ -6,6 +6,11 @@ mod fit;
 mod test;
 mod topology;
 
+pub(super) use fit::{INWARDS, Outside, Place, inside, inwards, mistaken};
+pub(super) use topology::{HOLE_EDGES, HOLE_SHARE, SLIVER};
+
+use super::{hold, mend};
+use crate::simulate::{Elements, Material, Settings, Simulator};
 use crate::{Error, Result};
 use ctsn_rig::gltf::{Source, read_garment};
 use ctsn_rig::{Character, Garment};
@@ -20,26 +25,95 @@ pub struct Findings {
     pub warnings: Vec<String>,
 }
 
-/// Checks a garment modelled on the character's canonical pose. `source`: how its file numbers its vertices.
-pub fn check(character: &Character, garment: &Garment, source: &Source) -> Result<Findings> {
-    let mut findings = Findings::default();
-    topology::check(&garment.mesh, source, &mut findings);
-    fit::check(character, garment, source, &mut findings)?;
-    Ok(findings)
+/// A garment fit to be simulated, and what there is to say of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fitted {
+    /// As it is simulated: mended, with what holds it.
+    pub garment: Garment,
+    /// What was mended and what was found to hold it, one sentence each, with the file's vertex numbers.
+    pub mended: Vec<String>,
+    /// Faults that may be meant.
+    pub warnings: Vec<String>,
 }
 
-/// Reads a garment and checks it. -> the garment and warnings; what makes it unusable is an error.
-pub fn load(path: &Path, character: &Character) -> Result<(Garment, Vec<String>)> {
-    let (garment, source) = read_garment(path, character.metres_per_unit)?;
-    let Findings { errors, warnings } = check(character, &garment, &source)?;
-    match errors.is_empty() {
-        true => Ok((garment, warnings)),
-        false => Err(Error::File { path: path.into(), reason: errors.join("\n  ") }),
+/// Checks a garment modelled on the character's canonical pose. `source`: how its file numbers its vertices.
+pub fn check(character: &Character, garment: &Garment, source: &Source) -> Result<Findings> {
+    Ok(check_beside(&Outside::new(character)?, garment, source))
+}
+
+/// The same beside a body whose outer skin is known.
+fn check_beside(outside: &Outside, garment: &Garment, source: &Source) -> Findings {
+    let mut findings = Findings::default();
+    topology::check(&garment.mesh, source, &mut findings);
+    fit::check(outside, garment, source, &mut findings);
+    crossings(garment, source, &mut findings);
+    findings
+}
+
+/// Faces through one another: those of two vertices in common are counted by what folds there.
+fn crossings(garment: &Garment, source: &Source, findings: &mut Findings) {
+    let mesh = &garment.mesh;
+    let pairs = Elements::new(&mesh.triangles, mesh.positions.len()).crossings(&mesh.positions);
+    if !pairs.is_empty() {
+        let first = |[face, _]: &[u32; 2]| source.numbers[mesh.triangles[*face as usize][0] as usize].to_string();
+        let near = list(pairs.iter().map(first));
+        findings
+            .errors
+            .push(format!("cloth through cloth: {} pairs of faces cross, near vertices {near}", pairs.len()));
     }
 }
 
+/// Mends a garment, finds what holds it, and checks it. What makes it unusable is an error, which names all that does.
+///
+/// Whatever simulates a garment takes it from here, so that what this accepts is what is simulated.
+pub fn fit(character: &Character, garment: Garment, source: Source) -> Result<Fitted> {
+    fit_beside(&Outside::new(character)?, garment, source)
+}
+
+/// The same beside a body whose outer skin is known.
+pub(super) fn fit_beside(outside: &Outside, garment: Garment, source: Source) -> Result<Fitted> {
+    let (mut garment, source, mut mended) = mend::mend(garment, source);
+    let mut findings = Findings::default();
+    mend::place(outside, &mut garment, &source, &mut mended, &mut findings);
+    // What is lifted or smoothed may leave a sliver where cloth was folded.
+    let (mut garment, source, again) = mend::mend(garment, source);
+    mended.extend(again);
+    if findings.errors.is_empty() {
+        hold::hold(outside, &mut garment, &source, &mut mended, &mut findings);
+        let Findings { errors, warnings } = check_beside(outside, &garment, &source);
+        findings.errors.extend(errors);
+        findings.warnings.extend(warnings);
+    }
+    let Findings { errors, warnings } = findings;
+    match errors.is_empty() {
+        true => Ok(Fitted { garment, mended, warnings }),
+        false => {
+            let said = mended.iter().map(|mend| format!("\n  mended: {mend}"));
+            Err(Error::Garment(errors.join("\n  ") + &said.collect::<String>()))
+        }
+    }
+}
+
+/// Reads a garment and fits it.
+pub fn load(path: &Path, character: &Character) -> Result<Fitted> {
+    let (garment, source) = read_garment(path, character.metres_per_unit)?;
+    fit(character, garment, source).map_err(|error| match error {
+        Error::Garment(reason) => Error::File { path: path.into(), reason },
+        other => other,
+    })
+}
+
+/// Hangs a fitted garment, with which every simulation begins. -> how far its vertices move until it rests, metres, at
+/// most. `pinched`: as of [`Settings`].
+pub fn rehearse(character: &Character, garment: &Garment, pinched: f64) -> Result<f64> {
+    let settings = Settings { attached: garment.pins.clone(), pinched, ..Settings::default() };
+    let rest = Simulator::new(character, garment, Material::default(), settings)?.drape()?;
+    let moved = rest.iter().zip(&garment.mesh.positions).map(|(now, then)| now.distance(*then));
+    Ok(moved.fold(0.0, f64::max))
+}
+
 /// The first few of a list, and how many there are.
-fn list(items: impl Iterator<Item = String>) -> String {
+pub(super) fn list(items: impl Iterator<Item = String>) -> String {
     const SHOWN: usize = 6;
     let items: Vec<String> = items.collect();
     let shown = items[..items.len().min(SHOWN)].join(", ");

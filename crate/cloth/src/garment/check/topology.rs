@@ -6,14 +6,17 @@ use ctsn_rig::mesh::triangle::least_angle;
 use ctsn_rig::mesh::{Edges, Mesh, Side};
 use std::collections::BTreeMap;
 
-/// Angles below which a triangle is a sliver, degrees: refused, and remarked upon.
-const SLIVER: [f64; 2] = [0.5, 8.0];
+/// Angle below which a triangle is a sliver, degrees: refused where it cannot be mended.
+pub const SLIVER: f64 = 0.5;
+
+/// Angle below which it is remarked upon, degrees.
+const THIN: f64 = 8.0;
 
 /// Holes are shorter than this share of the longest opening, or have at most [`HOLE_EDGES`] edges.
-const HOLE_SHARE: f64 = 0.12;
+pub const HOLE_SHARE: f64 = 0.12;
 
 /// A loop of so few edges is a missing face or two.
-const HOLE_EDGES: usize = 6;
+pub const HOLE_EDGES: usize = 6;
 
 /// Checks the mesh.
 pub(super) fn check(mesh: &Mesh, source: &Source, findings: &mut Findings) {
@@ -57,15 +60,13 @@ fn slivers(mesh: &Mesh, face: &impl Fn([u32; 3]) -> String, findings: &mut Findi
     let least = |t: &[u32; 3]| least_angle(t.map(|v| mesh.positions[v as usize]));
     let between =
         |low: f64, high: f64| list(mesh.triangles.iter().filter(|t| (low..high).contains(&least(t))).map(|t| face(*t)));
-    let (refused, remarked) = (between(0.0, SLIVER[0]), between(SLIVER[0], SLIVER[1]));
+    let (refused, remarked) = (between(0.0, SLIVER), between(SLIVER, THIN));
     if !refused.is_empty() {
-        findings.errors.push(format!("slivers, an angle below {}° (faces by vertices): {refused}", SLIVER[0]));
+        findings.errors.push(format!("slivers, an angle below {SLIVER}° (faces by vertices): {refused}"));
     }
     if !remarked.is_empty() {
         let reason = "even triangles simulate faster";
-        findings
-            .warnings
-            .push(format!("thin faces, an angle below {}° (by vertices): {remarked}; {reason}", SLIVER[1]));
+        findings.warnings.push(format!("thin faces, an angle below {THIN}° (by vertices): {remarked}; {reason}"));
     }
 }
 

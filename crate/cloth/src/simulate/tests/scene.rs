@@ -79,7 +79,7 @@ pub fn rigid(body: Mesh) -> Character {
 
 fn character(joints: Vec<Joint>, body: SkinnedMesh) -> Character {
     let surface = Surface::default();
-    Character { joints, root: 0, body, surface, clips: Vec::new(), metres_per_unit: 1.0 }
+    Character { joints, root: 0, body, surface, clips: Vec::new(), metres_per_unit: 1.0, parts: Default::default() }
 }
 
 /// Closed round cone from `a` (radius `ra`) to `b` (radius `rb`), stretched from a sphere.

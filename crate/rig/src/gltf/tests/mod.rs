@@ -1,6 +1,7 @@
 //! Tests on small files made here and, on request, on characters from outside (`CTSN_CHARACTERS`).
 
 mod hostile;
+mod packed;
 mod reading;
 mod world;
 
@@ -43,6 +44,7 @@ pub(super) fn tube() -> Character {
         surface,
         clips,
         metres_per_unit: 1.0,
+        parts: Default::default(),
     }
 }
 
@@ -110,7 +112,9 @@ pub(super) fn edit(path: &Path, change: impl FnOnce(&mut Value, &mut Vec<u8>)) -
     let mut json: Value = serde_json::from_slice(&glb.json).unwrap();
     let mut bin = glb.bin.unwrap().to_vec();
     change(&mut json, &mut bin);
-    json["buffers"][0]["byteLength"] = bin.len().into();
+    if json["buffers"].as_array().is_none_or(|buffers| buffers.len() == 1) {
+        json["buffers"][0]["byteLength"] = bin.len().into();
+    }
     let header = glb.header;
     let edited = ::gltf::Glb { header, json: json.to_string().into_bytes().into(), bin: Some(bin.into()) };
     let path = path.with_file_name("edited.glb");
