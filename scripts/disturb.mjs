@@ -1,6 +1,6 @@
 // npm run disturb -- --kills 200: `ctsn simulate` and `ctsn train` are killed at random moments and begun anew until
-// they have ended. What they leave must be what an undisturbed run leaves, byte for byte. Then two runs in one folder at
-// the same time, and a disk that is full.
+// they have ended. What they leave must be what an undisturbed run leaves, byte for byte. Then two runs in one folder
+// at the same time, and a disk that is full.
 import { createHash } from 'node:crypto';
 import { spawn } from 'node:child_process';
 import { once } from 'node:events';

@@ -80,7 +80,8 @@ fn record(gpu: &Gpu, model: &HostModel) -> Result<Model> {
     let recorded =
         model.map(|values| recorder.borrow_mut().constant(values), |indices| recorder.borrow_mut().index(indices));
     let mut recorder = recorder.into_inner();
-    let mut a = Activations::new(model, |stage, length| recorder.activation(stage, length));
+    // A room is a stage's own: by it the stage's dispatches are known.
+    let mut a = Activations::keeping(model, |stage, length| recorder.activation(stage, length));
     let mut one = |streams| {
         predict(&mut recorder, &recorded, streams, &mut a);
         recorder.take()

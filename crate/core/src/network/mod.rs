@@ -97,7 +97,7 @@ impl<B> Activations<B> {
         Self::with_workings(1, model, buffer)
     }
 
-    /// The same for a device that remembers what every graph layer computed.
+    /// The same with room for what every graph layer computes on its way, for a device that must tell them apart.
     pub fn keeping(model: &HostModel, buffer: impl FnMut(&str, usize) -> B) -> Self {
         Self::with_workings(model.layers.len(), model, buffer)
     }
