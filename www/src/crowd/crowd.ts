@@ -5,6 +5,7 @@ import {
   DirectionalLight,
   Fog,
   HemisphereLight,
+  MeshBasicMaterial,
   NeutralToneMapping,
   PerspectiveCamera,
   Scene,
@@ -52,6 +53,8 @@ export class Crowd {
     const { scene, animations } = await new GLTFLoader().parseAsync(glb, '');
     const crowd = new Crowd(canvas);
     const materials: Material[] = [];
+    // Until there is a fabric, which is made to the measure of a cloth.
+    const plain: Material = new MeshBasicMaterial();
     const columns = Math.ceil(Math.sqrt(count));
     for (let i = 0; i < count; i++) {
       const copy = clone(scene);
@@ -65,7 +68,7 @@ export class Crowd {
       const clip = animations[(7 * i) % animations.length]!;
       mixer.clipAction(clip).play();
       mixer.setTime((i * 0.37) % clip.duration);
-      const cloth: Cloth = new Cloth(model, copy, materials[i % COLOURS.length] as Material);
+      const cloth: Cloth = new Cloth(model, copy, materials[i % COLOURS.length] ?? plain);
       if (materials.length < COLOURS.length) {
         const fabric = createFabric(cloth.geometry);
         fabric.color.set(COLOURS[i]!);
