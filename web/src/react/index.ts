@@ -4,11 +4,8 @@ import { createElement, use, useLayoutEffect, useState, type ReactElement, type 
 import { DoubleSide, MeshStandardMaterial, type Material } from 'three';
 import { loadModel, type LoadOptions } from '../load.js';
 import type { CpuClothModel } from '../model.js';
-import type { AnyClothModel, Character, ClothOptions } from '../three/index.js';
+import type { AnyCloth, AnyClothModel, Character, ClothOptions } from '../three/index.js';
 import { Cloth as ThreeCloth } from '../three/cloth.js';
-
-/** A cloth of three.js, of whatever model and material. */
-export type ClothMesh = ThreeCloth<Material | Material[], AnyClothModel>;
 
 const models = new Map<string, Promise<CpuClothModel>>();
 
@@ -47,14 +44,14 @@ export function useCloth(
   model: AnyClothModel,
   character: Character,
   { bones, fit }: Pick<ClothOptions, 'bones' | 'fit'> = {},
-): ClothMesh | undefined {
+): AnyCloth | undefined {
   const renderer = useThree((state) => state.gl);
-  const [cloth, setCloth] = useState<ClothMesh>();
+  const [cloth, setCloth] = useState<AnyCloth>();
   const [, fail] = useState();
   // Made and freed by one effect: StrictMode runs it twice, and a render that is thrown away leaves nothing behind.
   useLayoutEffect(() => {
     const material = new MeshStandardMaterial({ side: DoubleSide });
-    const made: ClothMesh = new ThreeCloth<Material | Material[], AnyClothModel>(model, character, material, { renderer, bones, fit });
+    const made: AnyCloth = new ThreeCloth<Material | Material[], AnyClothModel>(model, character, material, { renderer, bones, fit });
     setCloth(made);
     return () => {
       made.dispose();
@@ -83,11 +80,11 @@ export interface ClothProps
   /** What `useGLTF` or `useLoader` gave as `scene`. */
   character: Character;
   /** How much of the network it takes. */
-  quality?: ClothMesh['quality'];
+  quality?: AnyCloth['quality'];
   /** Frames over which a change of `quality` is spread. */
   blend?: number;
   /** Takes the cloth, an object of three.js. */
-  ref?: Ref<ClothMesh>;
+  ref?: Ref<AnyCloth>;
   /** A material, in place of the plain one. */
   children?: ReactNode;
 }

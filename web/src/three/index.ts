@@ -1,5 +1,5 @@
 export { Cloth } from './cloth.js';
-export { Wardrobe } from './wardrobe.js';
+export { Wardrobe, type AnyCloth } from './wardrobe.js';
 export { deviceOf } from './renderer.js';
 export { ClothLoader } from './loader.js';
 export type { BoneMap, Character } from './bones.js';

@@ -17,7 +17,7 @@ const FRESH = 0.1;
 type Cost = Partial<Record<Quality, number>>;
 
 /** A cloth of any material and model. */
-type AnyCloth = Cloth<Material | Material[], AnyClothModel>;
+export type AnyCloth = Cloth<Material | Material[], AnyClothModel>;
 
 /** One cloth as the wardrobe sees it in this frame. */
 interface Place {
