@@ -1,5 +1,6 @@
 import { Switch, type Backend, type BackendChoice, type Measured, type Opener } from './backend.js';
 import type { ClothBuffers } from './buffers.js';
+import { makeDisposable, type MayBeUsed } from './disposable.js';
 import { CtsnError } from './error.js';
 import type { Frame, PredictOptions, Surface } from './frame.js';
 import type { ModelInfo } from './info.js';
@@ -248,14 +249,10 @@ export interface CpuClothModel extends ClothModel {
   predictCloth(pose: Pose, options?: PredictOptions): Frame;
 }
 
-/** The key of `Disposable`, where TypeScript's library and the browser know it. */
-type DisposeKey = SymbolConstructor extends { readonly dispose: infer Key extends symbol } ? Key : never;
-
 /** `using model = await loadModel(…)` disposes of it at the end of the block. */
-export interface ClothModel extends Record<DisposeKey, () => void> {}
+export interface ClothModel extends MayBeUsed {}
 
-const { dispose } = Symbol as { dispose?: symbol };
-if (dispose) Object.defineProperty(ClothModel.prototype, dispose, { value: ClothModel.prototype.dispose });
+makeDisposable(ClothModel);
 
 /** Codes of failures of the GPU, after which the CPU can go on. */
 const deviceFaults = new Set(['no_adapter', 'no_device', 'limit', 'out_of_memory', 'refused', 'lost', 'missing']);

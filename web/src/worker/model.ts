@@ -1,3 +1,4 @@
+import { makeDisposable, type MayBeUsed } from '../disposable.js';
 import { CtsnError } from '../error.js';
 import type { Frame, Surface } from '../frame.js';
 import type { ModelInfo } from '../info.js';
@@ -104,5 +105,7 @@ export class WorkerClothModel extends EventTarget {
   }
 }
 
-const { dispose } = Symbol as { dispose?: symbol };
-if (dispose) Object.defineProperty(WorkerClothModel.prototype, dispose, { value: WorkerClothModel.prototype.dispose });
+/** `using model = await loadModel(…)` disposes of it at the end of the block. */
+export interface WorkerClothModel extends MayBeUsed {}
+
+makeDisposable(WorkerClothModel);
