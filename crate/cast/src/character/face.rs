@@ -27,10 +27,9 @@ const DARK: [f32; 3] = [0.014, 0.010, 0.009];
 const MOUTH: [f32; 3] = [0.16, 0.04, 0.03];
 /// Up the ear, and out of it.
 const EAR: [[f64; 3]; 2] = [[0.10, 1.0, -0.18], [0.40, 0.0, 1.0]];
-/// The middle of the left eyeball; along its gaze, and across.
+/// The middle of the left eyeball; along its gaze.
 const EYE: [f64; 3] = [0.0385, 0.0, 0.0930];
 const GAZE: [f64; 3] = [0.243, 0.0, 0.970];
-const ACROSS: [f64; 3] = [0.970, 0.0, -0.243];
 /// Left of the middle of the mouth, and from there to its corner.
 const LIPS: [f64; 3] = [0.0005, -0.0690, 0.1030];
 const CORNER: [f64; 3] = [1.0, 0.15, -0.06];

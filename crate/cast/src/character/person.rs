@@ -6,7 +6,6 @@ use super::figure::{PART, Part};
 pub type Influence = &'static [(&'static str, f64, f64)];
 
 pub const UP: [f64; 3] = [0.0, 1.0, 0.0];
-pub const SIDE: [f64; 3] = [1.0, 0.0, 0.0];
 pub const FRONT: [f64; 3] = [0.0, 0.0, 1.0];
 /// Along the left arm: cos 42°, -sin 42°; and from the back of the hand to the palm.
 pub const ARM: [f64; 3] = [0.7431, -0.6691, 0.0];
