@@ -1,5 +1,5 @@
 import type { ClothModel, Quality } from 'ctsn';
-import { Cloth, Wardrobe } from 'ctsn/three';
+import { Cloth, ClothScheduler } from 'ctsn/three';
 import {
   AnimationMixer,
   DirectionalLight,
@@ -25,7 +25,7 @@ const COLOURS = ['#3f6482', '#8a4b3c', '#4f6b4a', '#7a6a8a', '#b08a3e'];
 /** Many dressed copies of one character, each in a motion of its own. */
 export class Crowd {
   readonly renderer: WebGLRenderer;
-  readonly wardrobe = new Wardrobe();
+  readonly scheduler = new ClothScheduler();
   readonly #scene = new Scene();
   readonly #camera = new PerspectiveCamera(38, 1, 0.1, 80);
   readonly #controls: OrbitControls;
@@ -78,7 +78,7 @@ export class Crowd {
       crowd.#cloths.push(cloth);
       crowd.#scene.add(copy, cloth);
     }
-    crowd.wardrobe.add(...crowd.#cloths);
+    crowd.scheduler.add(...crowd.#cloths);
     return crowd;
   }
 
@@ -91,7 +91,7 @@ export class Crowd {
   frame(seconds: number): void {
     this.#controls.update();
     for (const mixer of this.#mixers) mixer.update(seconds);
-    this.wardrobe.update(this.#camera);
+    this.scheduler.update(this.#camera);
     this.renderer.render(this.#scene, this.#camera);
   }
 

@@ -33,7 +33,7 @@ async function start(): Promise<void> {
   const budget = element<HTMLInputElement>('budget');
   const radios = [...document.querySelectorAll<HTMLInputElement>('input[name=quality]')];
   const choose = () => {
-    crowd.wardrobe.budget = Number(budget.value);
+    crowd.scheduler.budget = Number(budget.value);
     crowd.choose(radios.find((radio) => radio.checked)!.value as Quality | 'auto');
     element('milliseconds-wanted').textContent = `${budget.value} ms per frame`;
     meter.reset();
@@ -50,8 +50,8 @@ async function start(): Promise<void> {
     const seconds = Math.min((now - (last ?? now)) / 1000, 0.1);
     last = now;
     crowd.frame(seconds);
-    meter.add(crowd.wardrobe.spent);
-    const { tally } = crowd.wardrobe;
+    meter.add(crowd.scheduler.spent);
+    const { tally } = crowd.scheduler;
     Object.assign(hook, { frames: meter.count, milliseconds: meter.median, tally });
     element('milliseconds').textContent = `${meter.median.toFixed(1)} ms`;
     element('qualities').textContent = `${tally.full}, ${tally.coarse}, ${tally.skinned}`;
