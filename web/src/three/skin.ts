@@ -117,8 +117,9 @@ const cellOf = (x: number, y: number, z: number) =>
 /** The garment at rest on the character as it was bound [3·n], metres. */
 async function bindPose(model: AnyClothModel): Promise<Float32Array> {
   const pose = model.joints.flatMap((_, joint) => trained(model, joint).invert().elements);
-  const { positions } = await model.predictCloth(pose, { quality: 'skinned' });
-  return positions.slice();
+  const answer = model.predictCloth(pose, { quality: 'skinned', backend: 'cpu' });
+  // What the processor answers here is a view, and must be taken before anything else is predicted.
+  return 'output' in answer ? answer.positions.slice() : (await answer).positions;
 }
 
 /** A joint's inverse bind matrix. */

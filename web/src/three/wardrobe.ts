@@ -37,7 +37,7 @@ export class Wardrobe extends Group {
   quality: Quality | 'auto' = 'full';
 
   readonly #character: Character;
-  readonly #sources: ReadonlyMap<string, ModelSource>;
+  readonly #sources: Map<string, ModelSource>;
   readonly #options: WardrobeOptions;
   readonly #skin: Skin;
   /** What is on the character: worn, or on its way off. The innermost first. */
@@ -73,6 +73,12 @@ export class Wardrobe extends Group {
   cloth(garment: string): Cloth<Material, AnyClothModel> | undefined {
     const found = this.#garments.get(garment);
     return found?.wanted ? found.cloth : undefined;
+  }
+
+  /** Has one garment more, or another model for one that is not worn. */
+  stock(garment: string, source: ModelSource): this {
+    this.#sources.set(garment, source);
+    return this;
   }
 
   /** Fetches a garment's file before it is wanted. */
