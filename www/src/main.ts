@@ -38,10 +38,9 @@ async function open(page: TryOn, scene: Scene): Promise<void> {
     if (!entry) throw new Error(`${figure.name} has no garment "${garment}"; there are ${figure.garments.map(({ id }) => id).join(', ')}`);
     return { entry, look };
   });
-  const dressed = await page.choose(figure, wear?.map(({ entry }) => entry), showProgress);
+  await page.choose(figure, wear?.map(({ entry }) => entry), showProgress);
   for (const { entry, look } of wear ?? []) if (look) page.look(entry, look);
   page.apply(scene);
-  void dressed;
 }
 
 /** Keeps the address of the page that of what it shows; it changes a while after the last change. */
@@ -96,6 +95,8 @@ async function start(): Promise<void> {
 /** The page's handle. */
 function offer(page: TryOn): void {
   const captured = async () => {
+    // What was changed a moment ago waits for the next animation frame.
+    page.draw();
     await page.settled();
     return capture(page);
   };

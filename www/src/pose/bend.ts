@@ -23,9 +23,9 @@ export function aim(bone: Object3D, end: Object3D, target: Vector3, share = 1): 
 
 /**
  * Bends a limb of two bones so that its end is where `target` is, or as near as it reaches: by the law of cosines, in
- * the plane in which it is bent already. The end keeps its heading in the world.
+ * the plane in which it is bent already. What stands on the floor keeps its heading in the world: `flat`.
  */
-export function bendLimb(upper: Object3D, lower: Object3D, end: Object3D, target: Vector3): void {
+export function bendLimb(upper: Object3D, lower: Object3D, end: Object3D, target: Vector3, flat: boolean): void {
   const heading = end.getWorldQuaternion(new Quaternion());
   const [root, knee, tip] = [upper, lower, end].map((bone) => bone.getWorldPosition(new Vector3())) as [Vector3, Vector3, Vector3];
   const [long, short] = [root.distanceTo(knee), knee.distanceTo(tip)];
@@ -38,6 +38,7 @@ export function bendLimb(upper: Object3D, lower: Object3D, end: Object3D, target
   if (axis.lengthSq() < 1e-8) axis.set(1, 0, 0).cross(thigh);
   turnInWorld(lower, turn.setFromAxisAngle(axis.normalize(), wanted - thigh.angleTo(shin)));
   aim(upper, end, target);
+  if (!flat) return;
   const now = end.getWorldQuaternion(new Quaternion());
   turnInWorld(end, heading.multiply(now.invert()));
 }

@@ -10,6 +10,9 @@ export interface Handle {
   drag(target: Vector3): void;
 }
 
+/** What a figure stands on. */
+const FOOT = /foot|ankle|paw/i;
+
 const named = (bones: readonly Object3D[], pattern: RegExp) => bones.filter(({ name }) => pattern.test(name));
 
 /** The handles of a figure: ends of its limbs, head, tail and hip. Bones are told by their names. */
@@ -17,9 +20,10 @@ export function findHandles(bones: readonly Object3D[], hip: Object3D): Handle[]
   const limbs = named(bones, /(hand|wrist|foot|ankle|paw)(_?[lr]|\.[lr])?$/i).flatMap((bone) => {
     const [lower, upper] = [bone.parent, bone.parent?.parent];
     if (!lower || !upper || !bones.includes(upper)) return [];
-    return [{ name: spoken(bone.name), bone, drag: (target: Vector3) => bendLimb(upper, lower, bone, target) }];
+    const flat = FOOT.test(bone.name);
+    return [{ name: spoken(bone.name), bone, drag: (target: Vector3) => bendLimb(upper, lower, bone, target, flat) }];
   });
-  const feet = limbs.filter(({ bone }) => /foot|ankle|paw/i.test(bone.name));
+  const feet = limbs.filter(({ bone }) => FOOT.test(bone.name));
   const ends = [named(bones, /head$/i)[0], named(bones, /(tail\d*|fluke)$/i).at(-1)].flatMap((bone) => {
     const chain = bone ? above(bone, hip).slice(-3) : [];
     return bone && chain.length > 0 ? [{ name: spoken(bone.name), bone, drag: (target: Vector3) => bendChain(chain, bone, target) }] : [];
