@@ -44,7 +44,7 @@ export interface Demo {
   wear(garments: string[]): Promise<void>;
   /** Another figure, in what it comes in. */
   choose(figure: string): Promise<void>;
-  /** A picture of so many pixels, as a data address. */
+  /** A picture of so many pixels without a background, webp as a data address. */
   picture(width: number, height: number): Promise<string>;
   /** Geometries and textures that the renderer keeps on the GPU. */
   memory(): { geometries: number; textures: number };

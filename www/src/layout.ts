@@ -4,8 +4,11 @@ import type { Stage } from './stage/stage.js';
 /** On a phone the controls are below the figure; this is where that begins, as in page.css. */
 const narrow = matchMedia('(max-width: 820px)');
 
-/** Keeps the figure in the middle of what the controls leave free, and folds the panel on a phone. */
-export function layOut(stage: Stage): void {
+/**
+ * Keeps the figure in the middle of what the controls leave free, and folds the panel on a phone. Answers with what
+ * arranges it anew.
+ */
+export function layOut(stage: Stage): () => void {
   const [panel, rail, transport, fold] = ['panel', 'rail', 'transport', 'fold'].map((id) => element(id)) as [HTMLElement, HTMLElement, HTMLElement, HTMLElement];
   const measure = () => {
     const { innerHeight, innerWidth } = window;
@@ -28,4 +31,5 @@ export function layOut(stage: Stage): void {
   open(false);
   const observer = new ResizeObserver(measure);
   for (const part of [document.body, panel, rail, transport]) observer.observe(part);
+  return measure;
 }

@@ -59,8 +59,9 @@ function listen(page: TryOn): void {
   const status = (text: string) => (element('status').textContent = text);
   element('save').addEventListener('click', () => {
     page.draw();
+    const canvas = page.stage.renderer.domElement;
     const name = `ctsn-${page.dressed.entry.id}.png`;
-    takePicture(page.stage.renderer.domElement).then((blob) => save(blob, name), tell);
+    takePicture(canvas, { width: canvas.width, height: canvas.height, type: 'image/png', backdrop: true }).then((blob) => save(blob, name), tell);
     status(`Saved as ${name}`);
   });
   element('share').addEventListener('click', () => {
@@ -78,7 +79,7 @@ async function start(): Promise<void> {
   const address = new URL(location.href);
   const scene = readAddress(address);
   const stage = new Stage(element<HTMLCanvasElement>('stage'));
-  layOut(stage);
+  const arrange = layOut(stage);
   const page = new TryOn(stage, [...cast]);
   page.transport.play(!matchMedia('(prefers-reduced-motion: reduce)').matches);
   const backend = address.searchParams.get('backend');
@@ -89,11 +90,11 @@ async function start(): Promise<void> {
   keepAddress(page, address.searchParams);
   listen(page);
   page.run();
-  offer(page);
+  offer(page, arrange);
 }
 
 /** The page's handle. */
-function offer(page: TryOn): void {
+function offer(page: TryOn, arrange: () => void): void {
   const captured = async () => {
     // What was changed a moment ago waits for the next animation frame.
     page.draw();
@@ -130,8 +131,11 @@ function offer(page: TryOn): void {
       await page.choose(page.figures.find(({ id }) => id === figure)!);
     },
     async picture(width, height) {
+      // The controls are not in it.
+      page.stage.frame({ left: 0, right: 0, top: 0, bottom: 0 });
       page.draw();
-      const blob = await takePicture(page.stage.renderer.domElement, width, height);
+      const blob = await takePicture(page.stage.renderer.domElement, { width, height, type: 'image/webp', backdrop: false });
+      arrange();
       return new Promise((resolve) => {
         const reader = Object.assign(new FileReader(), { onload: () => resolve(reader.result as string) });
         reader.readAsDataURL(blob);
