@@ -125,7 +125,7 @@ export class TryOn {
     } else end();
     this.#rivals.update(dressed);
     this.#maps.update(dressed, this.transport.playing && !this.#own);
-    this.stage.follow(dressed.hip);
+    this.stage.follow(dressed.hip, dressed.head);
     const { distance, camera } = this.stage;
     dressed.worn.forEach(({ material }, layer) => material.raise(LAYER * layer, distance, camera.near));
     this.#render();

@@ -7,8 +7,8 @@ import type { WardrobeOptions } from './wardrobe.js';
 
 /** Cloth so far before the skin still covers it, metres. */
 const REACH = 0.05;
-/** Skin so near a hem may show when the cloth moves, metres. */
-const MARGIN = 0.06;
+/** Skin so near a hem may show when the cloth moves, metres: raised arms lift a shirt by more than a hand's breadth. */
+const MARGIN = 0.2;
 
 /** The skinned meshes of a character, of which some triangles are not drawn. */
 export class Skin {
@@ -75,7 +75,7 @@ const same = (a: readonly unknown[], b: readonly unknown[]) => a.length === b.le
 
 /**
  * Which vertices of `mesh` a garment covers, as both stand in the bind pose: those that have cloth a few centimetres
- * before them, away from its hems. 1 for each of those [vertices of mesh].
+ * before them, and are far from its hems. 1 for each of those [vertices of mesh].
  */
 export async function coveredSkin({ model, bones }: Cloth<Material, AnyClothModel>, mesh: SkinnedMesh): Promise<Uint8Array> {
   const { position, normal } = mesh.geometry.attributes as Record<string, BufferAttribute>;

@@ -30,11 +30,13 @@ const twill: Height = (u, v) => {
 /** Long floats of fine thread. */
 const satin: Height = (u, v) => 0.7 * wave(v * 64) + 0.3 * wave(u * 8 + 3 * Math.floor(v * 64) * 0.2);
 
-/** Fibres without an order: noise in octaves. */
+/** Fibres without an order: noise in octaves, each on a lattice that is turned, so that no rows are seen. */
 const felted: Height = (u, v) => {
-  // Nothing so large that its return would be seen.
-  let [sum, share] = [0, 0.45];
-  for (let octave = 32; octave <= 128; octave *= 2, share *= 0.75) sum += share * noise(u * octave, v * octave, octave);
+  let [sum, share] = [0, 0.4];
+  for (const octave of [24, 40, 64, 104]) {
+    sum += share * 0.5 * (noise(u * octave, v * octave, octave) + noise((u + v) * octave, (u - v + 1) * octave, octave));
+    share *= 0.8;
+  }
   return sum;
 };
 

@@ -10,6 +10,8 @@ export class Character {
   readonly meshes: readonly SkinnedMesh[];
   /** Triangles of its meshes, as their file has them: indices of vertices, three by three. */
   readonly triangles: ReadonlyMap<SkinnedMesh, ArrayLike<number>>;
+  /** All bones, those above before those below. */
+  readonly bones: readonly Object3D[];
   readonly motion: readonly AnimationClip[];
   /** Names of its clips. */
   readonly clips: readonly string[];
@@ -20,6 +22,9 @@ export class Character {
   private constructor(scene: Group, meshes: SkinnedMesh[], motion: AnimationClip[]) {
     this.scene = scene;
     this.meshes = meshes;
+    const bones: Object3D[] = [];
+    scene.traverse((object) => object instanceof Bone && bones.push(object));
+    this.bones = bones;
     this.triangles = new Map(meshes.map((mesh) => [mesh, trianglesOf(mesh)]));
     this.motion = motion;
     this.clips = motion.map(({ name }) => name);
@@ -40,13 +45,6 @@ export class Character {
     });
     if (meshes.length === 0) throw new Error(`${name} has no skinned mesh: a character with a skeleton is wanted`);
     return new Character(scene, meshes, animations);
-  }
-
-  /** All bones, those above before those below. */
-  get bones(): Object3D[] {
-    const found: Object3D[] = [];
-    this.scene.traverse((object) => object instanceof Bone && found.push(object));
-    return found;
   }
 
   /** Name of the clip being shown; none where the pose is one's own. */

@@ -111,6 +111,11 @@ export class Dressed {
     return worn ? worn.cloth.bones[worn.cloth.model.rootIndex]! : this.character.bones[0]!;
   }
 
+  /** The bone of its head; the hip of what has none. */
+  get head(): Object3D {
+    return this.character.bones.find(({ name }) => /head$/i.test(name)) ?? this.hip;
+  }
+
   dispose(): void {
     for (const { hem } of this.#worn) hem.free();
     this.#worn = [];

@@ -79,9 +79,11 @@ export class Stage {
     this.look(view);
   }
 
-  /** Keeps camera and lamp on a bone, the figure's hip. */
-  follow(bone: Object3D): void {
-    const to = bone.getWorldPosition(new Vector3());
+  /** Keeps camera and lamp between two bones, the figure's hip and its head, and at the height of the first. */
+  follow(hip: Object3D, head: Object3D): void {
+    const to = hip.getWorldPosition(new Vector3());
+    const { x, z } = head.getWorldPosition(new Vector3()).lerp(to, 0.5);
+    to.set(x, to.y, z);
     to.y = this.#middle + 0.4 * (to.y - this.#middle);
     this.camera.position.add(to).sub(this.#focus);
     this.#focus.copy(to);
