@@ -26,8 +26,12 @@ pub(super) struct Description {
 impl HostModel {
     /// Reads a model file; nothing in it is trusted.
     pub fn parse(bytes: &[u8]) -> Result<Self> {
-        let file = Tensors::parse(bytes)?;
-        let description = describe(&file)?;
+        Self::read(&Tensors::parse(bytes)?)
+    }
+
+    /// The same of a file's tensors.
+    pub fn read(file: &Tensors) -> Result<Self> {
+        let description = describe(file)?;
         let (rest, shape) = file.f32("cloth.rest", &[None, Some(3)])?;
         let (n, joints) = (shape[0], description.joints.len());
         if n == 0 || joints == 0 {
@@ -35,10 +39,10 @@ impl HostModel {
         }
         let triangles = file.u32("cloth.triangles", &[None, Some(3)], n)?;
         let dense = file.f32(CLOTH_WEIGHTS, &[Some(n), Some(joints)])?.0;
-        let (skeleton_basis, m) = basis(&file, SKELETON_BASIS, n)?;
-        let (mesh_basis, k) = basis(&file, MESH_BASIS, n)?;
-        let embedding = mlp(&file, "embedding", 12 * joints, Some(m))?;
-        let layers = graph(&file)?;
+        let (skeleton_basis, m) = basis(file, SKELETON_BASIS, n)?;
+        let (mesh_basis, k) = basis(file, MESH_BASIS, n)?;
+        let embedding = mlp(file, "embedding", 12 * joints, Some(m))?;
+        let layers = graph(file)?;
         let features = layers.last().map_or(3, |layer| layer.project.outputs / 4);
         let heads = description.heads;
         if layers.is_empty()
@@ -55,22 +59,22 @@ impl HostModel {
         let steps = description.polish.map_or(STEPS, |steps| steps as usize);
         Ok(Model {
             sizes: Sizes { vertices: n, joints, embedding: m, basis: k, features, heads },
-            cut: Cut::read(&file, n, &graph, steps)?,
+            cut: Cut::read(file, n, &graph, steps)?,
             graph,
             triangles,
             rest,
             skinning: Skinning::from_dense(&dense, joints),
-            reference: reference(&file, n, joints, description.edge_scale)?,
+            reference: reference(file, n, joints, description.edge_scale)?,
             embedding,
             skeleton_basis,
             layers,
-            vertex_mlp: mlp(&file, "vertex", features, Some(k))?,
+            vertex_mlp: mlp(file, "vertex", features, Some(k))?,
             mesh_stream: mesh_basis.iter().any(|value| *value != 0.0),
             mesh_basis,
-            surface: surface(&file, n)?,
-            body: Body::read(&file, n, joints)?,
+            surface: surface(file, n)?,
+            body: Body::read(file, n, joints)?,
             training: file.metadata.get("training").cloned(),
-            rig: Arc::new(rig(&file, description)?),
+            rig: Arc::new(rig(file, description)?),
         })
     }
 }
