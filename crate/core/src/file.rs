@@ -208,9 +208,9 @@ impl<'a> Tensors<'a> {
     /// The tensor of that name as finite f32, checked against `shape`; a `None` in it takes any size.
     pub fn f32(&self, name: &str, shape: &[Option<usize>]) -> Result<(Vec<f32>, Vec<usize>)> {
         let tensor = self.checked(name, shape)?;
-        let values = match tensor.dtype {
-            Dtype::I8 => self.scaled(name, tensor)?,
-            other => tensor.to_f32().ok_or_else(|| wrong(name, "F32, F16 or I8", other.name()))?,
+        let values = match self.whole(name, shape)? {
+            Some((values, scale)) => scaled(values, &scale),
+            None => tensor.to_f32().ok_or_else(|| wrong(name, "F32, F16 or I8", tensor.dtype.name()))?,
         };
         match values.iter().position(|value| !value.is_finite()) {
             Some(element) => Err(Error::NotFinite { what: name.to_owned(), element, found: values[element] }),
@@ -218,30 +218,30 @@ impl<'a> Tensors<'a> {
         }
     }
 
-    /// Whole numbers times a scale, one for each row or one for all: the numbers of `NAME`, or, where `NAME.fine` is
-    /// there, 256 times them plus those.
-    fn scaled(&self, name: &str, tensor: &Tensor) -> Result<Vec<f32>> {
-        let part = |suffix: &str| format!("{name}.{suffix}");
-        let real = self.checked(&part("scale"), &[None])?;
-        let scale = real.to_f32().ok_or_else(|| wrong(&part("scale"), "F32 or F16", real.dtype.name()))?;
+    /// The tensor of that name as whole numbers, if it is kept so, and their scales, one for each row or one for all.
+    /// The numbers are those of `NAME`, or, where `NAME.fine` is there, 256 times them plus those.
+    pub fn whole(&self, name: &str, shape: &[Option<usize>]) -> Result<Option<(Vec<f32>, Vec<f32>)>> {
+        let tensor = self.checked(name, shape)?;
+        if tensor.dtype != Dtype::I8 {
+            return Ok(None);
+        }
+        let [scale_name, fine_name] = ["scale", "fine"].map(|part| format!("{name}.{part}"));
+        let scale = self.checked(&scale_name, &[None])?;
+        let scale = scale.to_f32().ok_or_else(|| wrong(&scale_name, "F32 or F16", scale.dtype.name()))?;
         if scale.len() != 1 && Some(&scale.len()) != tensor.shape.first() {
-            let wanted = format!("one scale, or one for each of the rows of {:?}", tensor.shape);
-            return Err(wrong(&part("scale"), &wanted, &format!("{}", scale.len())));
+            let wanted = format!("one scale, or one for each row of {:?}", tensor.shape);
+            return Err(wrong(&scale_name, &wanted, &format!("{}", scale.len())));
         }
         let mut values: Vec<f32> = tensor.bytes.iter().map(|byte| f32::from(*byte as i8)).collect();
-        if self.tensors.contains_key(&part("fine")) {
-            let shape: Vec<_> = tensor.shape.iter().copied().map(Some).collect();
-            let fine = self.checked(&part("fine"), &shape)?;
+        if self.tensors.contains_key(&fine_name) {
+            let fine = self.checked(&fine_name, &tensor.shape.iter().copied().map(Some).collect::<Vec<_>>())?;
             if fine.dtype != Dtype::I8 {
-                return Err(wrong(&part("fine"), "I8", fine.dtype.name()));
+                return Err(wrong(&fine_name, "I8", fine.dtype.name()));
             }
             let add = |(value, byte): (&mut f32, &u8)| *value = 256.0 * *value + f32::from(*byte as i8);
             values.iter_mut().zip(&*fine.bytes).for_each(add);
         }
-        let row = values.len().checked_div(scale.len()).unwrap_or(0).max(1);
-        let rows = values.chunks_mut(row).zip(&scale);
-        rows.for_each(|(row, scale)| row.iter_mut().for_each(|value| *value *= scale));
-        Ok(values)
+        Ok(Some((values, scale)))
     }
 
     /// The tensor of that name as u32 below `limit`, checked against `shape`.
@@ -264,6 +264,15 @@ impl<'a> Tensors<'a> {
         let wanted = format!("shape [{}]", sizes.collect::<Vec<_>>().join(", "));
         Err(wrong(name, &wanted, &format!("{:?}", tensor.shape)))
     }
+}
+
+/// Whole numbers times the scale of their row, or of all.
+pub fn scaled(mut whole: Vec<f32>, scale: &[f32]) -> Vec<f32> {
+    let width = whole.len().checked_div(scale.len()).unwrap_or(0).max(1);
+    for (row, scale) in whole.chunks_mut(width).zip(scale) {
+        row.iter_mut().for_each(|value| *value *= scale);
+    }
+    whole
 }
 
 fn wrong(tensor: &str, wanted: &str, found: &str) -> Error {

@@ -1,4 +1,4 @@
-//! `ctsn pack`: a model as a small file.
+//! `ctsn pack`: a model or a character as a small file.
 
 use super::{bar, file_name};
 use crate::packing::{self, BOUND, Difference, Packed, Trial};
@@ -14,17 +14,20 @@ const JUDGED: usize = 200;
 /// Poses a second that are taken from the clips.
 const RATE: f64 = 5.0;
 
-/// Make a model's file small to download: about a third of the bytes
+/// Make a file small to download: a model's or a character's, to about a third of the bytes
 ///
 /// Learned tensors become whole numbers of one or two bytes with a scale per row, as coarse as the cloth bears: the
 /// mean vertex moves by at most 0.1 mm and its normal by 0.1° over the character's clips, polish and repair included.
 /// What comes out is packed by gzip. Every command and every page reads it as the model that it was made of.
+///
+/// A character (`ctsn pack character.glb -o small.glb`) is coded by meshoptimizer: three.js reads it once GLTFLoader has
+/// its MeshoptDecoder.
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// Model file (safetensors)
-    model: PathBuf,
-    /// The character it was trained on (glTF), whose clips are the poses that are compared
-    character: PathBuf,
+    /// Model file (safetensors), or a character (GLB)
+    file: PathBuf,
+    /// The character that a model was trained on (glTF): its clips are the poses that are compared
+    character: Option<PathBuf>,
     /// Where to write the small file
     #[arg(short, long)]
     output: PathBuf,
@@ -34,11 +37,16 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> Result<()> {
-    let before = file::read(&arguments.model)?;
-    let context = || arguments.model.display().to_string();
+    let before = file::read(&arguments.file)?;
+    if before.starts_with(b"glTF") {
+        return character(arguments, before.len());
+    }
+    let context = || arguments.file.display().to_string();
+    let wanted = "a model is packed to an error that is measured: name its character, too, as in ctsn pack MODEL CHARACTER";
+    let path = arguments.character.as_ref().context(wanted)?;
     let tensors = Tensors::parse(&before).with_context(context)?.into_owned();
     let model = HostModel::read(&tensors).with_context(context)?;
-    let character = gltf::read_character(&arguments.character, RATE)?;
+    let character = gltf::read_character(path, RATE)?;
     let trial = Trial::new(model.clone(), &character, TRIED)?;
     let bar = bar(0, "pack");
     let (small, list) = packing::pack(&tensors, &trial, |name| bar.set_message(name.to_owned()))?;
@@ -61,6 +69,19 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         1e3 * BOUND.0,
         BOUND.1
     );
+    Ok(())
+}
+
+/// Packs a character, and says how far its joints are from where they were, over its clips.
+fn character(Arguments { file: path, output, .. }: &Arguments, before: usize) -> Result<()> {
+    gltf::pack(path, output)?;
+    let [was, is] = [path, output].map(|path| gltf::read_character(path, RATE));
+    let (was, is) = (was?, is?);
+    let poses = was.clips.iter().zip(&is.clips).flat_map(|(was, is)| was.poses.iter().zip(&is.poses));
+    let joints = poses.flat_map(|(was, is)| was.iter().zip(is));
+    let far = joints.map(|(was, is)| was.translation.distance(is.translation)).fold(0.0, f64::max);
+    let bytes = file::read(output)?.len();
+    println!("{}: {bytes} bytes, before {before}; joints at most {:.2} mm from where they were", file_name(output), 1e3 * far);
     Ok(())
 }
 
