@@ -45,18 +45,21 @@ pub fn quantise(file: &mut Tensors, name: &str, levels: u32, importance: Option<
         values.chunks(width).map(|row| row.iter().fold(0.0, |most: f32, value| most.max(value.abs()))).collect();
     let counts = |row: usize| importance.map_or(1.0 / greatest[row], |importance| importance[row]);
     let most = (0..greatest.len()).filter(|row| greatest[*row] > 0.0).map(|row| counts(row) * greatest[row]);
-    let step = most.fold(0.0, f32::max) / levels.min(if graph.is_some() { MOST_LEVELS / 2 } else { MOST_LEVELS }) as f32;
+    let step =
+        most.fold(0.0, f32::max) / levels.min(if graph.is_some() { MOST_LEVELS / 2 } else { MOST_LEVELS }) as f32;
     let scale: Vec<f32> = (0..greatest.len())
         .map(|row| if greatest[row] > 0.0 && counts(row) > 0.0 { step / counts(row) } else { 0.0 })
         .collect();
-    let whole = |(at, value): (usize, &f32)| if scale[at / width] > 0.0 { (value / scale[at / width]).round() } else { 0.0 };
+    let whole =
+        |(at, value): (usize, &f32)| if scale[at / width] > 0.0 { (value / scale[at / width]).round() } else { 0.0 };
     let mut numbers: Vec<f32> = values.iter().enumerate().map(whole).collect();
     if let Some(graph) = &graph {
         subtract_expected(graph, &mut numbers);
     }
     // The low byte is signed, too: so the high ones of small numbers are all zero, which packs to nothing.
     let fine: Vec<i8> = numbers.iter().map(|number| *number as i32 as i8).collect();
-    let high: Vec<i8> = numbers.iter().zip(&fine).map(|(number, fine)| ((number - f32::from(*fine)) / 256.0) as i8).collect();
+    let high: Vec<i8> =
+        numbers.iter().zip(&fine).map(|(number, fine)| ((number - f32::from(*fine)) / 256.0) as i8).collect();
     file.tensors.insert(format!("{name}.scale"), Tensor::f32(&[scale.len()], &scale));
     if high.iter().any(|high| *high != 0) {
         file.tensors.insert(name.to_owned(), Tensor::i8(&shape, &high));

@@ -1,7 +1,7 @@
 //! `ctsn pack`: a model or a character as a small file.
 
 use super::{bar, file_name};
-use crate::packing::{self, BOUND, Difference, Packed, Trial};
+use crate::packing::{self, BOUND, Difference, Packed, Small, Trial};
 use anyhow::{Context, Result};
 use ctsn_core::file::Tensors;
 use ctsn_core::model::{HostModel, file_bytes};
@@ -42,17 +42,17 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         return character(arguments, before.len());
     }
     let context = || arguments.file.display().to_string();
-    let wanted = "a model is packed to an error that is measured: name its character, too, as in ctsn pack MODEL CHARACTER";
+    let wanted =
+        "a model is packed to an error that is measured: name its character, too, as in ctsn pack MODEL CHARACTER";
     let path = arguments.character.as_ref().context(wanted)?;
     let tensors = Tensors::parse(&before).with_context(context)?.into_owned();
     let model = HostModel::read(&tensors).with_context(context)?;
     let character = gltf::read_character(path, RATE)?;
-    let trial = Trial::new(model.clone(), &character, TRIED)?;
+    let (trial, judge) = (Trial::new(model.clone(), &character, TRIED)?, Trial::new(model, &character, JUDGED)?);
     let bar = bar(0, "pack");
-    let (small, list) = packing::pack(&tensors, &trial, |name| bar.set_message(name.to_owned()))?;
+    let Small { file: small, list, difference } =
+        packing::pack(&tensors, [&trial, &judge], |name| bar.set_message(name.to_owned()))?;
     bar.finish_and_clear();
-    let judge = Trial::new(model, &character, JUDGED)?;
-    let difference = judge.difference(&small)?;
     if arguments.report {
         report(&tensors, &small, &list);
     }
@@ -60,7 +60,13 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let packed = file::gzip(&plain);
     file::write(&arguments.output, &packed)?;
     let Difference { distance, angle, greatest } = difference;
-    println!("{}: {} bytes, {} unpacked; before {}", file_name(&arguments.output), packed.len(), plain.len(), before.len());
+    println!(
+        "{}: {} bytes, {} unpacked; before {}",
+        file_name(&arguments.output),
+        packed.len(),
+        plain.len(),
+        before.len()
+    );
     println!(
         "over {} poses: {:.4} mm and {angle:.4}° in the mean, at most {:.2} mm; wanted {:.1} mm and {:.1}°",
         judge.poses(),
@@ -81,7 +87,11 @@ fn character(Arguments { file: path, output, .. }: &Arguments, before: usize) ->
     let joints = poses.flat_map(|(was, is)| was.iter().zip(is));
     let far = joints.map(|(was, is)| was.translation.distance(is.translation)).fold(0.0, f64::max);
     let bytes = file::read(output)?.len();
-    println!("{}: {bytes} bytes, before {before}; joints at most {:.2} mm from where they were", file_name(output), 1e3 * far);
+    println!(
+        "{}: {bytes} bytes, before {before}; joints at most {:.2} mm from where they were",
+        file_name(output),
+        1e3 * far
+    );
     Ok(())
 }
 

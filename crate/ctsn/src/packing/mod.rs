@@ -14,6 +14,8 @@ pub const BOUND: (f64, f64) = (1e-4, 0.1);
 /// one another: their squares add up, to less than one.
 const SHARES: [(&str, f64); 2] = [(SKELETON_BASIS, 0.65), (MESH_BASIS, 0.45)];
 const SHARE: f64 = 0.11;
+/// What is left of the shares when more is not tried: the rest is the file's, not ours.
+const LEAST_PART: f64 = 0.3;
 /// Trials go from 7 bits and a sign in steps of half a bit.
 const FEWEST_LEVELS: f64 = 127.0;
 const HALF_BITS: u32 = 16;
@@ -27,17 +29,33 @@ pub struct Packed {
     pub difference: Difference,
 }
 
-/// Packs a model's tensors, so that it predicts what the model does within [`BOUND`].
-pub fn pack(file: &Tensors<'static>, trial: &Trial, mut tell: impl FnMut(&str)) -> Result<(Tensors<'static>, Vec<Packed>)> {
-    let (mut small, mut list) = (file.clone(), Vec::new());
-    for name in packable(file) {
-        tell(&name);
-        let packed = choose(file, &name, trial)?;
-        quantise(&mut small, &name, packed.levels, importance(&name, trial))?;
-        list.push(packed);
+/// A whole model, packed.
+pub struct Small {
+    pub file: Tensors<'static>,
+    pub list: Vec<Packed>,
+    /// What all of it changes, in the poses of the judge.
+    pub difference: Difference,
+}
+
+/// Packs a model's tensors, so that in the poses of `judge` it predicts what the model does within [`BOUND`]. Where
+/// together they change more, each gets less.
+pub fn pack(file: &Tensors<'static>, [trial, judge]: [&Trial; 2], mut tell: impl FnMut(&str)) -> Result<Small> {
+    let mut part = 1.0;
+    loop {
+        let (mut small, mut list) = (file.clone(), Vec::new());
+        for name in packable(file) {
+            tell(&name);
+            let packed = choose(file, &name, trial, part)?;
+            quantise(&mut small, &name, packed.levels, importance(&name, trial))?;
+            list.push(packed);
+        }
+        narrow(&mut small);
+        let difference = judge.difference(&small)?;
+        if difference.within(1.0) || part < LEAST_PART {
+            return Ok(Small { file: small, list, difference });
+        }
+        part *= 0.8;
     }
-    narrow(&mut small);
-    Ok((small, list))
 }
 
 /// What an error in each row of a tensor counts: in a basis, as much as the matrix is multiplied by.
@@ -47,8 +65,8 @@ fn importance<'a>(name: &str, trial: &'a Trial) -> Option<&'a [f32]> {
 }
 
 /// The fewest levels by which a tensor alone keeps to its share, by halving.
-fn choose(file: &Tensors<'static>, name: &str, trial: &Trial) -> Result<Packed> {
-    let share = SHARES.iter().find(|(basis, _)| *basis == name).map_or(SHARE, |(_, share)| *share);
+fn choose(file: &Tensors<'static>, name: &str, trial: &Trial, part: f64) -> Result<Packed> {
+    let share = part * SHARES.iter().find(|(basis, _)| *basis == name).map_or(SHARE, |(_, share)| *share);
     let levels = |half_bits: u32| ((FEWEST_LEVELS * (0.5 * f64::from(half_bits)).exp2()) as u32).min(MOST_LEVELS);
     let attempt = |levels: u32| -> Result<Packed> {
         let mut one = file.clone();
@@ -63,8 +81,7 @@ fn choose(file: &Tensors<'static>, name: &str, trial: &Trial) -> Result<Packed> 
     while low < high {
         let middle = (low + high) / 2;
         let packed = attempt(levels(middle))?;
-        let Difference { distance, angle, .. } = packed.difference;
-        if distance <= share * BOUND.0 && angle <= share * BOUND.1 {
+        if packed.difference.within(share) {
             (high, best) = (middle, Some(packed));
         } else {
             low = middle + 1;

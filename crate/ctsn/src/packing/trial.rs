@@ -1,5 +1,6 @@
 //! What packing changes: the cloth of a packed model beside that of the model, over poses.
 
+use super::BOUND;
 use anyhow::{Result, ensure};
 use ctsn_core::cpu::Level;
 use ctsn_core::file::Tensors;
@@ -18,6 +19,13 @@ pub struct Difference {
     pub greatest: f64,
 }
 
+impl Difference {
+    /// Whether it is at most a share of [`BOUND`].
+    pub fn within(&self, share: f64) -> bool {
+        self.distance <= share * BOUND.0 && self.angle <= share * BOUND.1
+    }
+}
+
 /// Poses, and what the model predicts in them.
 pub struct Trial {
     poses: Vec<Vec<f32>>,
@@ -30,7 +38,10 @@ impl Trial {
     /// Of `model` in at most `most` poses, spread evenly over the clips of `character`.
     pub fn new(model: HostModel, character: &Character, most: usize) -> Result<Self> {
         let all: Vec<_> = character.clips.iter().flat_map(|clip| &clip.poses).collect();
-        ensure!(!all.is_empty(), "the character has no clip: the poses of one tell what packing changes; see ctsn motion");
+        ensure!(
+            !all.is_empty(),
+            "the character has no clip: the poses of one tell what packing changes; see ctsn motion"
+        );
         let chosen = all.iter().step_by(all.len().div_ceil(most));
         let ordered = chosen.map(|pose| Ok(joints(&crate::commands::ordered(&model.rig.joints, character, pose)?)));
         let poses = ordered.collect::<Result<Vec<_>>>()?;

@@ -155,13 +155,22 @@ fn keep(role: &str, accessor: &Value, bytes: &[u8]) -> Option<Kept> {
         (name, "VEC2") if name.starts_with("TEXCOORD_") && floats.iter().all(|uv| (0.0..=1.0).contains(uv)) => {
             kept(U16, true, 4, "NONE", whole(&floats, 2))
         }
-        (name, "VEC4") if name.starts_with("JOINTS_") && bytes.as_chunks::<2>().0.iter().all(|[_, high]| *high == 0) => {
+        (name, "VEC4")
+            if name.starts_with("JOINTS_") && bytes.as_chunks::<2>().0.iter().all(|[_, high]| *high == 0) =>
+        {
             kept(U8, false, 4, "NONE", bytes.iter().step_by(2).copied().collect())
         }
         ("indices", "SCALAR") if !real => {
             let narrow = bytes.as_chunks::<4>().0.iter().all(|[.., a, b]| [*a, *b] == [0, 0]);
             let (component, stride) = if narrow { (U16, 2) } else { (U32, 4) };
-            Some(Kept { component, normalized: false, stride, mode: "TRIANGLES", filter: "NONE", bytes: bytes.to_vec() })
+            Some(Kept {
+                component,
+                normalized: false,
+                stride,
+                mode: "TRIANGLES",
+                filter: "NONE",
+                bytes: bytes.to_vec(),
+            })
         }
         _ => None,
     }
@@ -194,12 +203,16 @@ impl Output {
         let bytes: Vec<u8> = kept.iter().flat_map(|part| &part.bytes).copied().collect();
         let (count, coded) = if mode == "TRIANGLES" {
             let corners: Vec<u32> = bytes.as_chunks::<4>().0.iter().map(|b| u32::from_le_bytes(*b)).collect();
-            let coded = IndexEncoding::new(1).and_then(|coding| codec::encode_index_buffer(&corners, coding, &mut workspace));
+            let coded =
+                IndexEncoding::new(1).and_then(|coding| codec::encode_index_buffer(&corners, coding, &mut workspace));
             (corners.len(), coded)
         } else {
             let count = bytes.len() / stride;
             let coding = VertexEncoding::new(0, 2);
-            (count, coding.and_then(|coding| codec::encode_vertex_buffer(&bytes, count, stride, coding, &mut workspace)))
+            (
+                count,
+                coding.and_then(|coding| codec::encode_vertex_buffer(&bytes, count, stride, coding, &mut workspace)),
+            )
         };
         let coded = coded.map_err(|error| error.to_string())?;
         let mut view = json!({ "buffer": 1, "byteOffset": self.unpacked, "byteLength": count * stride,
@@ -228,12 +241,12 @@ impl Output {
     /// Copies the views that something else than a packed accessor needs.
     fn leave_others(&mut self, json: &mut Value, bin: &[u8], views: &[Value], places: &Places) {
         let mut moved = BTreeMap::new();
-        for (index, accessor) in json["accessors"].as_array().into_iter().flatten().enumerate() {
+        for (index, accessor) in list(json, "accessors").iter().enumerate() {
             if !places.contains_key(&index) {
                 needed(accessor, &mut moved);
             }
         }
-        needed(&json["images"], &mut moved);
+        list(json, "images").iter().for_each(|image| needed(image, &mut moved));
         for (old, new) in &mut moved {
             let Some(view) = views.get(*old) else { continue };
             let (from, length) = (size(view, "byteOffset"), size(view, "byteLength"));
@@ -243,8 +256,9 @@ impl Output {
             self.append(bin.get(from..from.saturating_add(length)).unwrap_or_default());
             self.views.push(copy);
         }
-        rename(&mut json["images"], &moved);
-        rename(&mut json["accessors"], &moved);
+        for part in ["images", "accessors"] {
+            json.get_mut(part).into_iter().for_each(|part| rename(part, &moved));
+        }
     }
 
     fn finish(mut self, mut json: Value, accessors: &[Value], places: &Places) -> Read<Vec<u8>> {
@@ -260,8 +274,9 @@ impl Output {
             json["accessors"][*index] = accessor;
         }
         // What is the default of the format need not be said a thousand times.
-        for animation in json["animations"].as_array_mut().into_iter().flatten() {
-            for sampler in animation["samplers"].as_array_mut().into_iter().flatten().filter_map(Value::as_object_mut) {
+        for animation in json.get_mut("animations").and_then(Value::as_array_mut).into_iter().flatten() {
+            let samplers = animation.get_mut("samplers").and_then(Value::as_array_mut).into_iter().flatten();
+            for sampler in samplers.filter_map(Value::as_object_mut) {
                 if sampler.get("interpolation") == Some(&json!("LINEAR")) {
                     sampler.remove("interpolation");
                 }
