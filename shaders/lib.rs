@@ -108,6 +108,8 @@ params! {
     Normals { vertices: u32 }
     /// `Params` of polish.wgsl.
     Polish { vertices: u32, rate: f32, momentum: f32 }
+    /// `Params` of ride.wgsl.
+    Ride { riders: u32, least: f32 }
     /// `Params` of skin.wgsl.
     Skin { vertices: u32, width: u32, back: u32, world: u32 }
     /// `Params` of slide.wgsl.
@@ -160,6 +162,8 @@ shaders! {
     NORMALS: Normals, "normals" + [], [Read Read Read Write], [64, 1];
     /// Offsets, neighbours, squares, share, current -> other.
     POLISH: Polish, "polish" + [], [Read Read Read Read Read Write], [64, 1];
+    /// Corners, coordinates, positions, normals -> riders.
+    RIDE: Ride, "ride" + [], [Read Read Read Read Write], [64, 1];
     /// Exposed body, its normals, offsets, fans, seeds, displacement -> positions.
     SETTLE: Collide, "settle" + ["collide.foot", "collide.walk", "collide.triangle"], [Read Read Read Read Read Read Write], [64, 1];
     /// Rest, joints, weights, transforms -> positions.

@@ -123,7 +123,7 @@ pub fn shell(character: &Character, cut: &Cut) -> Result<Garment> {
         )));
     }
     let pins = pins(&piece, &pattern.openings, quality.edge);
-    Ok(Garment { surface: unwrap::unwrap(&piece.mesh), mesh: piece.mesh, pins })
+    Ok(Garment { surface: unwrap::unwrap(&piece.mesh), mesh: piece.mesh, pins, drawn: None })
 }
 
 /// The character without its obstacles.

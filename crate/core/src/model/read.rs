@@ -1,6 +1,6 @@
 //! Model file -> model, checking every name, shape and index. network.md §8.
 
-use super::{Body, Cut, HostModel, Layer, Linear, Model, Reference, Sizes, Skinning, Surface};
+use super::{Body, Cut, HostModel, Layer, Linear, Model, Reference, Ride, Sizes, Skinning, Surface};
 use super::{CLOTH_WEIGHTS, MESH_BASIS, SKELETON_BASIS, STEPS};
 use crate::error::{Decimal, Error, Result};
 use crate::file::Tensors;
@@ -52,6 +52,7 @@ impl HostModel {
             )));
         }
         let graph = Graph::new(n, &triangles);
+        let surface = surface(&file, Ride::count(&file)?.unwrap_or(n))?;
         let steps = description.polish.map_or(STEPS, |steps| steps as usize);
         Ok(Model {
             sizes: Sizes { vertices: n, joints, embedding: m, basis: k, features, heads },
@@ -67,7 +68,8 @@ impl HostModel {
             vertex_mlp: mlp(&file, "vertex", features, Some(k))?,
             mesh_stream: mesh_basis.iter().any(|value| *value != 0.0),
             mesh_basis,
-            surface: surface(&file, n)?,
+            ride: Ride::read(&file, n, surface.as_ref())?,
+            surface,
             body: Body::read(&file, n, joints)?,
             training: file.metadata.get("training").cloned(),
             rig: Arc::new(rig(&file, description)?),
@@ -240,6 +242,7 @@ fn layer(file: &Tensors, l: usize, inputs: usize) -> Result<Layer<Vec<f32>>> {
     })
 }
 
+/// What draws a mesh of `n` vertices: the cloth, or what rides on it.
 fn surface(file: &Tensors, n: usize) -> Result<Option<Surface>> {
     if !file.tensors.contains_key("draw.vertex") {
         return Ok(None);

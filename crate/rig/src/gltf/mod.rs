@@ -195,7 +195,7 @@ fn garment(file: &File, scale: f64) -> Read<(Garment, Source)> {
     if welded.mesh.triangles.is_empty() {
         return Err("holds no garment: no mesh has a triangle with an area".to_string());
     }
-    Ok((Garment { mesh: welded.mesh, surface: welded.surface, pins: welded.pins }, welded.source))
+    Ok((Garment { mesh: welded.mesh, surface: welded.surface, pins: welded.pins, drawn: None }, welded.source))
 }
 
 #[cfg(test)]

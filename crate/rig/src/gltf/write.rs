@@ -77,7 +77,7 @@ pub fn write_garment(path: &Path, garment: &Garment) -> Result<()> {
     let mut file = Writer::default();
     let mut primitives = file.primitives(&garment.mesh, &garment.surface, &Appearance::default(), None);
     if !garment.pins.is_empty() {
-        let Garment { mesh, surface, pins } = garment;
+        let Garment { mesh, surface, pins, .. } = garment;
         let plain = surface.triangles.is_empty();
         let vertex = if plain { (0..mesh.positions.len() as u32).collect() } else { surface.vertex.clone() };
         let pinned = vertex.iter().map(|at| f64::from(u8::from(pins.contains(at))));

@@ -22,7 +22,7 @@ pub(super) struct Patch {
 
 impl Patch {
     pub fn new(garment: &Garment, source: &Source) -> Patch {
-        let Garment { mesh, surface, pins } = garment;
+        let Garment { mesh, surface, pins, .. } = garment;
         // The mesh has the surface's triangles in their order, without those that have no area.
         let mut drawn = surface.triangles.iter();
         let vertex = |drawn: &[u32; 3]| drawn.map(|corner| surface.vertex[corner as usize]);
@@ -79,7 +79,7 @@ impl Patch {
             if before.surface.vertex.is_empty() { Surface::default() } else { self.draw(&before.surface, &new) };
         let pins = (0..used.len() as u32).filter(|vertex| self.pinned[used[*vertex as usize] as usize]).collect();
         let numbers = used.iter().map(|vertex| self.numbers[*vertex as usize]).collect();
-        (Garment { mesh, surface, pins }, numbers)
+        (Garment { mesh, surface, pins, drawn: before.drawn.clone() }, numbers)
     }
 
     /// The surface that draws the faces: a drawn vertex for each pair of an old one and a vertex of the cloth.
