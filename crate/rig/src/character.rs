@@ -51,6 +51,14 @@ pub struct Drawn {
     pub surface: Surface,
 }
 
+impl Drawn {
+    /// The same on a cloth whose faces were all turned.
+    pub fn turn(&mut self) {
+        self.riders.iter_mut().for_each(|rider| rider.coordinates[3] *= -1.0);
+        self.surface.triangles.iter_mut().for_each(|face| face.swap(1, 2));
+    }
+}
+
 /// Motion sampled at a fixed rate.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Clip {

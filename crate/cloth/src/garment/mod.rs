@@ -15,6 +15,7 @@ mod mend;
 mod opening;
 mod pattern;
 mod quality;
+mod resampling;
 mod sheet;
 mod unwrap;
 
@@ -40,6 +41,7 @@ pub use check::{Findings, Fitted, check, fit, load, rehearse};
 pub use drape::{Rest, drape};
 pub use kind::Kind;
 pub use quality::{Quality, quality};
+pub use resampling::Resample;
 
 /// How a garment is cut; what is `None` follows from the kind. Fractions run along a limb from where it leaves the
 /// trunk (0) to its tip (1).

@@ -14,6 +14,9 @@ const F32: u32 = 5126;
 const U32: u32 = 5125;
 const U16: u32 = 5123;
 
+/// By this a file of ours is known.
+pub(super) const GENERATOR: &str = "ctsn";
+
 /// How a surface without colours of its own looks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Appearance {
@@ -217,7 +220,7 @@ impl Writer {
     }
 
     fn save(mut self, path: &Path, mut document: Value) -> Result<()> {
-        document["asset"] = json!({ "version": "2.0", "generator": "ctsn" });
+        document["asset"] = json!({ "version": "2.0", "generator": GENERATOR });
         document["accessors"] = json!(std::mem::take(&mut self.accessors));
         document["bufferViews"] = json!(std::mem::take(&mut self.views));
         document["materials"] = json!(std::mem::take(&mut self.materials));
