@@ -2,6 +2,7 @@
 //! which the normal between its corners' normals leads to the vertex, and how far. simulation.md §4.4.
 
 use super::layers::Layer;
+use super::split::Split;
 use crate::wrap::Faces;
 use ctsn_rig::mesh::triangle::{closest, cross, point};
 use ctsn_rig::{Mesh, Rider};
@@ -14,8 +15,20 @@ const BEYOND: f64 = 3.0;
 /// Rounds of Newton's method: the fifth digit is there after three.
 const ROUNDS: usize = 8;
 
-/// The riders of `drawn`, whose faces are of these `layers`, on the `cloth`.
-pub(super) fn bind(drawn: &Mesh, layers: &[Layer], cloth: &Mesh) -> Vec<Rider> {
+/// The riders of `drawn`, whose faces are of these `layers`, on the `cloth`. A vertex that halves an edge is as far from
+/// the cloth as the ends of the edge are: the cloth is round where the artist's faces were flat.
+pub(super) fn bind(drawn: &Split, layers: &[Layer], cloth: &Mesh) -> Vec<Rider> {
+    let layers: Vec<Layer> = drawn.faces.iter().map(|face| layers[*face]).collect();
+    let mut riders = nearest(&drawn.mesh, &layers, cloth);
+    let first = riders.len() - drawn.parents.len();
+    for (vertex, ends) in (first..).zip(&drawn.parents) {
+        riders[vertex].coordinates[3] = 0.5 * ends.iter().map(|&end| riders[end as usize].coordinates[3]).sum::<f64>();
+    }
+    riders
+}
+
+/// What each vertex is nearest to.
+fn nearest(drawn: &Mesh, layers: &[Layer], cloth: &Mesh) -> Vec<Rider> {
     let faces = Faces::new(cloth);
     let looks: Vec<DVec3> = cloth.corners().map(cross).collect();
     let normals = cloth.normals(&cloth.positions);

@@ -4,6 +4,7 @@
 mod binding;
 mod layers;
 mod sheet;
+mod split;
 #[cfg(test)]
 mod test;
 
@@ -13,9 +14,10 @@ use super::quality;
 use ctsn_rig::gltf::Source;
 use ctsn_rig::mesh::Edges;
 use ctsn_rig::statistics::Sorted;
-use ctsn_rig::{Drawn, Garment, Mesh};
+use ctsn_rig::{Drawn, Garment, Mesh, Surface};
 use layers::{Layer, layers};
 use sheet::Sheet;
+use split::Split;
 use std::fmt;
 use std::str::FromStr;
 
@@ -24,6 +26,8 @@ const HUMAN: f64 = 1.7;
 /// Edges that nobody chose, metres: so many vertices, within these lengths.
 const VERTICES: f64 = 4000.0;
 const EDGES: [f64; 2] = [0.008, 0.015];
+/// Drawn edges are at most so long, in edges of the cloth.
+const DRAWN: f64 = 1.5;
 /// Edges that may be asked for, metres.
 const ASKED: [f64; 2] = [0.004, 0.05];
 /// Meshes of more vertices take too long to simulate, whoever drew them.
@@ -80,42 +84,46 @@ pub(super) fn resample(
     wanted: Resample,
     said: &mut Vec<String>,
 ) -> (Garment, Source) {
+    let kept = wanted == Resample::Never || wanted == Resample::Auto && source.own;
     // What is somewhere else or of another scale is refused later.
-    if wanted == Resample::Never || mistaken(outside, &garment).is_some() {
+    if kept || mistaken(outside, &garment).is_some() {
         return (garment, source);
     }
     let layers = layers(&garment.mesh, outside);
     let scale = outside.body / HUMAN;
-    let Some(reason) = reason(&garment.mesh, &source, &layers, scale, wanted) else { return (garment, source) };
-    let (sheet, numbers) = single(&garment, &source, &layers);
+    let Some(reason) = reason(&garment.mesh, &layers, scale, wanted) else { return (garment, source) };
+    let whole = Garment { surface: surface(&garment), ..garment.clone() };
+    let (sheet, numbers) = single(&whole, &source, &layers);
     let area = sheet.mesh.area();
     let edge = match wanted {
         Resample::Edge(edge) => edge,
         _ => (area / (0.866 * VERTICES)).sqrt().clamp(EDGES[0] * scale, EDGES[1] * scale),
     };
     let target = (area / (0.866 * edge * edge)).ceil() as usize;
-    let (mut even, source) = Sheet::new(&sheet, &numbers).resample(target);
+    let (mut even, numbers) = Sheet::new(&sheet, &numbers).resample(target);
     let found = quality(&even.mesh);
     if !found.manifold || even.mesh.triangles.is_empty() {
         said.push(format!("simulated as its maker meshed it, although {reason}: no even mesh could be made of it"));
-        return (garment, Source { numbers: source.numbers, ..source });
+        return (garment, source);
     }
-    let riders = binding::bind(&garment.mesh, &layers, &even.mesh);
+    let drawn = Split::new(&whole, DRAWN * found.edge);
+    let riders = binding::bind(&drawn, &layers, &even.mesh);
     let farthest = riders.iter().map(|rider| rider.coordinates[3].abs()).fold(0.0, f64::max);
     said.push(format!(
         "simulated on an even mesh of its own, {} vertices, edges of {:.0} mm, because {reason}; {} drawn vertices ride \
-         on it, up to {:.0} mm away (--resample never simulates the file's own)",
+         on it, {} of them the file's, up to {:.0} mm away (--resample never simulates the file's own)",
         even.mesh.positions.len(),
         1e3 * found.edge,
         riders.len(),
+        whole.mesh.positions.len(),
         1e3 * farthest
     ));
-    even.drawn = Some(Drawn { riders, surface: surface(garment) });
-    (even, source)
+    even.drawn = Some(Drawn { riders, surface: drawn.surface });
+    (even, numbers)
 }
 
 /// Why a garment is not simulated as it is; none where it is.
-fn reason(mesh: &Mesh, source: &Source, layers: &[Layer], scale: f64, wanted: Resample) -> Option<String> {
+fn reason(mesh: &Mesh, layers: &[Layer], scale: f64, wanted: Resample) -> Option<String> {
     if matches!(wanted, Resample::Edge(_)) {
         return Some("that was asked for".to_owned());
     }
@@ -130,7 +138,7 @@ fn reason(mesh: &Mesh, source: &Source, layers: &[Layer], scale: f64, wanted: Re
     }
     let angles = Sorted::new(mesh.corners().map(ctsn_rig::mesh::triangle::least_angle));
     let count = mesh.positions.len();
-    if source.own || count <= MOST && angles.median() > ISOTROPIC {
+    if count <= MOST && angles.median() > ISOTROPIC {
         return None;
     }
     let place = |v: u32| mesh.positions[v as usize];
@@ -146,35 +154,33 @@ fn reason(mesh: &Mesh, source: &Source, layers: &[Layer], scale: f64, wanted: Re
 }
 
 /// The faces of the sheet, mended where others were left out.
-fn single(garment: &Garment, source: &Source, layers: &[Layer]) -> (Garment, Source) {
+fn single(whole: &Garment, source: &Source, layers: &[Layer]) -> (Garment, Source) {
+    let mut sheet = whole.clone();
     if layers.iter().all(|layer| *layer == Layer::Sheet) {
-        return (Garment { surface: surface(garment.clone()), ..garment.clone() }, source.clone());
+        return (sheet, source.clone());
     }
-    let mut sheet = Garment { surface: surface(garment.clone()), ..garment.clone() };
-    let mut kept = layers.iter().map(|layer| *layer == Layer::Sheet);
-    let mut drawn = kept.clone();
-    sheet.mesh.triangles.retain(|_| kept.next() == Some(true));
-    sheet.surface.triangles.retain(|_| drawn.next() == Some(true));
+    for triangles in [&mut sheet.mesh.triangles, &mut sheet.surface.triangles] {
+        let mut layers = layers.iter();
+        triangles.retain(|_| layers.next() == Some(&Layer::Sheet));
+    }
     let (sheet, source, _) = mend(sheet, source.clone());
     (sheet, source)
 }
 
 /// What draws a garment, with a triangle for each of the mesh in its order: without those that have no area.
-fn surface(garment: Garment) -> ctsn_rig::Surface {
-    let Garment { mesh, mut surface, .. } = garment;
-    let mut triangles = mesh.triangles.iter().peekable();
-    let vertex = &surface.vertex;
-    surface.triangles.retain(|drawn| {
-        let same = triangles.peek().is_some_and(|corners| drawn.map(|v| vertex[v as usize]) == **corners);
-        if same {
-            triangles.next();
-        }
-        same
-    });
-    if surface.triangles.len() != mesh.triangles.len() {
-        // A mesh without anything to draw it draws itself.
-        let vertex = (0..mesh.positions.len() as u32).collect();
-        return ctsn_rig::Surface { vertex, triangles: mesh.triangles, ..Default::default() };
+fn surface(garment: &Garment) -> Surface {
+    let Garment { mesh, surface, .. } = garment;
+    let mut drawn = surface.triangles.iter();
+    let vertex = |drawn: &[u32; 3]| drawn.map(|corner| surface.vertex[corner as usize]);
+    let same: Option<Vec<[u32; 3]>> =
+        mesh.triangles.iter().map(|corners| drawn.find(|drawn| vertex(drawn) == *corners).copied()).collect();
+    match same {
+        Some(triangles) => Surface { triangles, ..surface.clone() },
+        // A mesh that nothing draws draws itself.
+        None => Surface {
+            vertex: (0..mesh.positions.len() as u32).collect(),
+            triangles: mesh.triangles.clone(),
+            ..Surface::default()
+        },
     }
-    surface
 }
