@@ -37,7 +37,13 @@ impl Ride<Vec<f32>, Vec<u32>> {
         if !["draw.corners", "draw.coordinates"].iter().any(|name| file.tensors.contains_key(*name)) {
             return Ok(None);
         }
-        Ok(Some(file.f32("draw.coordinates", &[None, Some(4)])?.1[0]))
+        match file.f32("draw.coordinates", &[None, Some(4)])?.1[0] {
+            0 => {
+                let (tensor, wanted) = ("draw.coordinates".to_owned(), "at least one row".to_owned());
+                Err(Error::Shape { tensor, wanted, found: "none".to_owned() })
+            }
+            count => Ok(Some(count)),
+        }
     }
 
     /// That of a file for `n` cloth vertices; `None` where it has none.
