@@ -6,6 +6,7 @@
 pub mod finite;
 pub mod golden;
 pub mod nested;
+pub mod packed;
 pub mod random;
 pub mod sphere;
 #[cfg(not(target_arch = "wasm32"))]

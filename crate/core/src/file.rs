@@ -108,12 +108,9 @@ impl Tensor<'_> {
 
     /// Elements as u32; `None` for a tensor of any other than unsigned integers.
     pub fn to_u32(&self) -> Option<Vec<u32>> {
-        match self.dtype {
-            Dtype::U32 => Some(self.bytes.as_chunks().0.iter().map(|b| u32::from_le_bytes(*b)).collect()),
-            Dtype::U16 => Some(self.bytes.as_chunks().0.iter().map(|b| u16::from_le_bytes(*b).into()).collect()),
-            Dtype::U8 => Some(self.bytes.iter().map(|b| u32::from(*b)).collect()),
-            Dtype::F32 | Dtype::F16 | Dtype::I8 => None,
-        }
+        let whole = |bytes: &[u8]| bytes.iter().rev().fold(0, |sum, byte| sum << 8 | u32::from(*byte));
+        let unsigned = matches!(self.dtype, Dtype::U32 | Dtype::U16 | Dtype::U8);
+        unsigned.then(|| self.bytes.chunks_exact(self.dtype.size()).map(whole).collect())
     }
 }
 
@@ -220,6 +217,7 @@ impl<'a> Tensors<'a> {
 
     /// The tensor of that name as whole numbers, if it is kept so, and their scales, one for each row or one for all.
     /// The numbers are those of `NAME`, or, where `NAME.fine` is there, 256 times them plus those.
+    #[inline(never)]
     pub fn whole(&self, name: &str, shape: &[Option<usize>]) -> Result<Option<(Vec<f32>, Vec<f32>)>> {
         let tensor = self.checked(name, shape)?;
         if tensor.dtype != Dtype::I8 {
@@ -232,16 +230,17 @@ impl<'a> Tensors<'a> {
             let wanted = format!("one scale, or one for each row of {:?}", tensor.shape);
             return Err(wrong(&scale_name, &wanted, &format!("{}", scale.len())));
         }
-        let mut values: Vec<f32> = tensor.bytes.iter().map(|byte| f32::from(*byte as i8)).collect();
-        if self.tensors.contains_key(&fine_name) {
-            let fine = self.checked(&fine_name, &tensor.shape.iter().copied().map(Some).collect::<Vec<_>>())?;
-            if fine.dtype != Dtype::I8 {
-                return Err(wrong(&fine_name, "I8", fine.dtype.name()));
+        let fine = match self.tensors.get(&fine_name) {
+            Some(fine) if fine.dtype != Dtype::I8 || fine.shape != tensor.shape => {
+                let wanted = format!("I8 {:?}", tensor.shape);
+                return Err(wrong(&fine_name, &wanted, &format!("{} {:?}", fine.dtype.name(), fine.shape)));
             }
-            let add = |(value, byte): (&mut f32, &u8)| *value = 256.0 * *value + f32::from(*byte as i8);
-            values.iter_mut().zip(&*fine.bytes).for_each(add);
-        }
-        Ok(Some((values, scale)))
+            fine => fine,
+        };
+        let low = |at: usize| fine.map_or(0.0, |fine| f32::from(fine.bytes[at] as i8));
+        let high = if fine.is_some() { 256.0 } else { 1.0 };
+        let whole = tensor.bytes.iter().enumerate().map(|(at, byte)| high * f32::from(*byte as i8) + low(at));
+        Ok(Some((whole.collect(), scale)))
     }
 
     /// The tensor of that name as u32 below `limit`, checked against `shape`.
