@@ -1,6 +1,6 @@
 //! Characters that we pack ourselves: read back, they stand and move as before.
 
-use super::super::pack::pack;
+use super::super::{pack, read_character};
 use super::*;
 use serde_json::Value;
 
