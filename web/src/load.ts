@@ -29,7 +29,7 @@ export interface LoadOptions extends DownloadOptions, WasmSources {
    */
   threads?: number | 'auto' | undefined;
   /**
-   * Answers as soon as the coarse cloth is there, about half of the file, and lets the folds come in when the rest is.
+   * Answers as soon as the coarse cloth is there, two thirds of the file, and lets the folds come in when the rest is.
    * `model.complete` and the event `complete` tell when; a connection that is cut meanwhile leaves the coarse cloth.
    */
   progressive?: boolean | undefined;
