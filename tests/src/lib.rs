@@ -7,6 +7,7 @@ pub mod finite;
 pub mod golden;
 pub mod layered;
 pub mod nested;
+pub mod packed;
 pub mod random;
 pub mod sphere;
 #[cfg(not(target_arch = "wasm32"))]

@@ -29,7 +29,7 @@ export interface LoadOptions extends DownloadOptions, WasmSources {
    */
   threads?: number | 'auto' | undefined;
   /**
-   * Answers as soon as the coarse cloth is there, about half of the file, and lets the folds come in when the rest is.
+   * Answers as soon as the coarse cloth is there, two thirds of the file, and lets the folds come in when the rest is.
    * `model.complete` and the event `complete` tell when; a connection that is cut meanwhile leaves the coarse cloth.
    */
   progressive?: boolean | undefined;
@@ -65,11 +65,7 @@ export async function loadModel(
   if (backend === 'auto' || backend === 'webgpu') prepare(device, options.gpuWasm);
   const read = reader(source);
   const starting = startEngine(countThreads(options.threads), options);
-  // It ends with the caller's signal, and with a model that is disposed of before it is complete.
-  const end = new AbortController();
-  const abort = (): void => end.abort(signal?.reason);
-  if (signal?.aborted) abort();
-  signal?.addEventListener('abort', abort);
+  const { end, done } = follow([signal, options.request?.signal]);
   const { file, coarse } = read({ ...options, signal: end.signal }, progressive);
   let held: Uint8Array | undefined;
   const openSide: Opener = async (device) => {
@@ -77,7 +73,7 @@ export async function loadModel(
     const { request, cache } = options;
     return GpuSide.open(held ?? (await read({ request, cache }, false).file), device, options);
   };
-  const whole = file.then((bytes) => (held = bytes)).finally(() => signal?.removeEventListener('abort', abort));
+  const whole = file.then((bytes) => (held = bytes)).finally(done);
   whole.catch(() => undefined);
   const [engine, first] = await until(signal, Promise.all([starting, Promise.race([whole, coarse])]));
   const finest = held ? 'full' : 'coarse';
@@ -102,6 +98,17 @@ export async function loadModel(
     model.dispose();
     throw error;
   }
+}
+
+/** What ends a download: any of the caller's signals, or we, where a model is disposed of before it is complete. */
+function follow(signals: (AbortSignal | null | undefined)[]): { end: AbortController; done: () => void } {
+  const [end, listening] = [new AbortController(), new AbortController()];
+  for (const signal of signals) {
+    const abort = (): void => end.abort(signal?.reason);
+    if (signal?.aborted) abort();
+    signal?.addEventListener('abort', abort, { signal: listening.signal });
+  }
+  return { end, done: () => listening.abort() };
 }
 
 /**

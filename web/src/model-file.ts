@@ -15,8 +15,8 @@ interface Header {
 }
 
 /**
- * A model file as it comes, unpacked where it is packed. Once the skeleton stream is there, which stands first, it hands
- * over a whole file whose mesh stream is zero: a model without folds.
+ * A model file as it comes, unpacked where it is packed. Once the skeleton stream is there, which stands first, it
+ * hands over a whole file whose mesh stream is zero: a model without folds.
  */
 export class ModelFile {
   readonly #coarse: ((file: Uint8Array) => void) | undefined;

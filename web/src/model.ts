@@ -79,7 +79,7 @@ export class ClothModel extends EventTarget {
     return this.#fadeIn.finest;
   }
 
-  /** Resolves when all is there: at once, unless loaded `progressive`. Rejects as `loadModel` would, and stays coarse. */
+  /** Resolves when all is there: at once, if not `progressive`. Rejects as `loadModel` would; it stays coarse then. */
   get complete(): Promise<this> {
     return this.#complete;
   }

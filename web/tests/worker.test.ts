@@ -24,8 +24,8 @@ async function remote(): Promise<Golden & { far: WorkerClothModel; spares: Quest
     const { positions, normals, confidence } = near.predictCloth(sent);
     return { frame: { positions: positions.slice(), normals: normals.slice(), confidence }, pose };
   };
-  const { joints, rootIndex, inverseBind, vertexCount, triangles, surface, threads, info } = near;
-  const description = { model: 1, joints, rootIndex, inverseBind, vertexCount, triangles, surface, threads, info };
+  const { joints, rootIndex, inverseBind, vertexCount, triangles, surface, threads, info, finest } = near;
+  const description = { model: 1, joints, rootIndex, inverseBind, vertexCount, triangles, surface, threads, info, finest };
   const port = { ask, tell: (request: unknown) => told.push(request) };
   // The package makes them; its types do not show how.
   const Model = WorkerClothModel as new (...list: unknown[]) => WorkerClothModel;
@@ -79,5 +79,39 @@ test('a scheduler takes cloths of a worker, from before their first answer on', 
   far.dispose();
   expect(told).toEqual([{ call: 0, type: 'dispose', model: 1 }]);
   expect(() => scheduler.update(camera)).toThrow(expect.objectContaining({ code: 'disposed' }) as Error);
+  model.dispose();
+});
+
+test('a model in a worker that was loaded progressive tells when its folds are there, or why not', async () => {
+  const { far, model } = await remote();
+  const { joints, rootIndex, inverseBind, vertexCount, triangles, surface, threads, info } = far;
+  const described = { model: 2, joints, rootIndex, inverseBind, vertexCount, triangles, surface, threads, finest: 'coarse' };
+  const Model = WorkerClothModel as new (...list: unknown[]) => WorkerClothModel;
+  const shares: [number, number][] = [];
+  let finish!: (answer: unknown) => void;
+  let fail!: (error: unknown) => void;
+  const ask = (question: { type: string; shares?: [number, number]; pose?: Float32Array }) => {
+    if (question.type === 'complete') return new Promise((resolve, reject) => ([finish, fail] = [resolve, reject]));
+    shares.push(question.shares!);
+    const zeros = new Float32Array(3 * vertexCount);
+    return Promise.resolve({ frame: { positions: zeros, normals: zeros, confidence: 1 }, pose: question.pose });
+  };
+  const port = { ask, tell: () => undefined };
+  const early = new Model(port, { ...described, info: { ...info, meshMatrices: 0 } });
+  const pose = new Float32Array(16 * joints.length);
+  for (let joint = 0; joint < joints.length; joint++) pose.set([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1], 16 * joint);
+  let heard = 0;
+  early.addEventListener('complete', () => heard++);
+  await early.predictCloth(pose);
+  expect([early.finest, early.info.meshMatrices, shares[0]]).toEqual(['coarse', 0, [1, 0]]);
+  finish({ completed: info });
+  expect(await early.complete).toBe(early);
+  expect([early.finest, early.info, heard]).toEqual(['full', info, 1]);
+  await early.predictCloth(pose);
+  expect(shares[1]![1]).toBeCloseTo(1 / 12);
+  const cut = new Model(port, { ...described, info });
+  fail(new Error('cut'));
+  await expect(cut.complete).rejects.toThrow('cut');
+  expect(cut.finest).toBe('coarse');
   model.dispose();
 });

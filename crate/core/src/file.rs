@@ -2,120 +2,13 @@
 //! The `safetensors` crate brings serde_json and 39 kB of brotli to the browser (measured); the header is small, so it
 //! is read here.
 
+mod tensor;
+
 use crate::{Error, Result};
-use half::f16;
 use miniserde::json::{self, Array, Number, Object, Value};
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BinaryHeap};
-
-/// Element type of a stored tensor.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Dtype {
-    /// 32-bit float.
-    F32,
-    /// 16-bit float.
-    F16,
-    /// 32-bit unsigned integer.
-    U32,
-    /// 16-bit unsigned integer.
-    U16,
-    /// 8-bit unsigned integer.
-    U8,
-    /// 8-bit signed integer, which a scale makes a real number: [`Tensors::f32`].
-    I8,
-}
-
-impl Dtype {
-    const NAMES: [(&'static str, Dtype); 6] = [
-        ("F32", Dtype::F32),
-        ("F16", Dtype::F16),
-        ("U32", Dtype::U32),
-        ("U16", Dtype::U16),
-        ("U8", Dtype::U8),
-        ("I8", Dtype::I8),
-    ];
-
-    /// Name in the header.
-    pub fn name(self) -> &'static str {
-        Self::NAMES.iter().find(|entry| entry.1 == self).map_or("?", |entry| entry.0)
-    }
-
-    fn size(self) -> usize {
-        match self {
-            Dtype::F32 | Dtype::U32 => 4,
-            Dtype::F16 | Dtype::U16 => 2,
-            Dtype::U8 | Dtype::I8 => 1,
-        }
-    }
-}
-
-/// One stored tensor: type, shape and little-endian bytes, borrowed from a file that was read.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Tensor<'a> {
-    /// Element type.
-    pub dtype: Dtype,
-    /// Shape, row-major.
-    pub shape: Vec<usize>,
-    /// Little-endian elements.
-    pub bytes: Cow<'a, [u8]>,
-}
-
-impl Tensor<'_> {
-    /// Tensor of F32 elements.
-    pub fn f32(shape: &[usize], values: &[f32]) -> Self {
-        debug_assert_eq!(shape.iter().product::<usize>(), values.len());
-        let bytes = values.iter().flat_map(|value| value.to_le_bytes()).collect();
-        Self { dtype: Dtype::F32, shape: shape.to_vec(), bytes }
-    }
-
-    /// Tensor of F16 elements, rounded from `values`.
-    pub fn f16(shape: &[usize], values: &[f32]) -> Self {
-        let bytes = values.iter().flat_map(|value| f16::from_f32(*value).to_le_bytes()).collect();
-        Self { dtype: Dtype::F16, shape: shape.to_vec(), bytes }
-    }
-
-    /// Tensor of U32 elements.
-    pub fn u32(shape: &[usize], values: &[u32]) -> Self {
-        let bytes = values.iter().flat_map(|value| value.to_le_bytes()).collect();
-        Self { dtype: Dtype::U32, shape: shape.to_vec(), bytes }
-    }
-
-    /// Tensor of the narrowest unsigned type that holds `values`.
-    pub fn narrow(shape: &[usize], values: &[u32]) -> Self {
-        let (dtype, size) = match values.iter().max().copied().unwrap_or(0) {
-            0..=0xff => (Dtype::U8, 1),
-            0x100..=0xffff => (Dtype::U16, 2),
-            _ => (Dtype::U32, 4),
-        };
-        let bytes = values.iter().flat_map(|value| value.to_le_bytes().into_iter().take(size)).collect();
-        Self { dtype, shape: shape.to_vec(), bytes }
-    }
-
-    /// Tensor of I8 elements.
-    pub fn i8(shape: &[usize], values: &[i8]) -> Self {
-        let bytes = values.iter().map(|value| *value as u8).collect();
-        Self { dtype: Dtype::I8, shape: shape.to_vec(), bytes }
-    }
-
-    /// Elements as f32; `None` for an integer tensor.
-    pub fn to_f32(&self) -> Option<Vec<f32>> {
-        match self.dtype {
-            Dtype::F32 => Some(self.bytes.as_chunks().0.iter().map(|b| f32::from_le_bytes(*b)).collect()),
-            Dtype::F16 => Some(self.bytes.as_chunks().0.iter().map(|b| f16::from_le_bytes(*b).to_f32()).collect()),
-            Dtype::U32 | Dtype::U16 | Dtype::U8 | Dtype::I8 => None,
-        }
-    }
-
-    /// Elements as u32; `None` for a tensor of any other than unsigned integers.
-    pub fn to_u32(&self) -> Option<Vec<u32>> {
-        match self.dtype {
-            Dtype::U32 => Some(self.bytes.as_chunks().0.iter().map(|b| u32::from_le_bytes(*b)).collect()),
-            Dtype::U16 => Some(self.bytes.as_chunks().0.iter().map(|b| u16::from_le_bytes(*b).into()).collect()),
-            Dtype::U8 => Some(self.bytes.iter().map(|b| u32::from(*b)).collect()),
-            Dtype::F32 | Dtype::F16 | Dtype::I8 => None,
-        }
-    }
-}
+pub use tensor::{Dtype, Tensor};
 
 /// The content of one safetensors file.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -220,6 +113,7 @@ impl<'a> Tensors<'a> {
 
     /// The tensor of that name as whole numbers, if it is kept so, and their scales, one for each row or one for all.
     /// The numbers are those of `NAME`, or, where `NAME.fine` is there, 256 times them plus those.
+    #[inline(never)]
     pub fn whole(&self, name: &str, shape: &[Option<usize>]) -> Result<Option<(Vec<f32>, Vec<f32>)>> {
         let tensor = self.checked(name, shape)?;
         if tensor.dtype != Dtype::I8 {
@@ -232,16 +126,17 @@ impl<'a> Tensors<'a> {
             let wanted = format!("one scale, or one for each row of {:?}", tensor.shape);
             return Err(wrong(&scale_name, &wanted, &format!("{}", scale.len())));
         }
-        let mut values: Vec<f32> = tensor.bytes.iter().map(|byte| f32::from(*byte as i8)).collect();
-        if self.tensors.contains_key(&fine_name) {
-            let fine = self.checked(&fine_name, &tensor.shape.iter().copied().map(Some).collect::<Vec<_>>())?;
-            if fine.dtype != Dtype::I8 {
-                return Err(wrong(&fine_name, "I8", fine.dtype.name()));
+        let fine = match self.tensors.get(&fine_name) {
+            Some(fine) if fine.dtype != Dtype::I8 || fine.shape != tensor.shape => {
+                let wanted = format!("I8 {:?}", tensor.shape);
+                return Err(wrong(&fine_name, &wanted, &format!("{} {:?}", fine.dtype.name(), fine.shape)));
             }
-            let add = |(value, byte): (&mut f32, &u8)| *value = 256.0 * *value + f32::from(*byte as i8);
-            values.iter_mut().zip(&*fine.bytes).for_each(add);
-        }
-        Ok(Some((values, scale)))
+            fine => fine,
+        };
+        let low = |at: usize| fine.map_or(0.0, |fine| f32::from(fine.bytes[at] as i8));
+        let high = if fine.is_some() { 256.0 } else { 1.0 };
+        let whole = tensor.bytes.iter().enumerate().map(|(at, byte)| high * f32::from(*byte as i8) + low(at));
+        Ok(Some((whole.collect(), scale)))
     }
 
     /// The tensor of that name as u32 below `limit`, checked against `shape`.

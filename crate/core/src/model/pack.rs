@@ -76,8 +76,8 @@ fn cloth(file: &Tensors, n: usize) -> Result<Graph<Vec<u32>>> {
     Ok(Graph::new(n, &file.u32("cloth.triangles", &[None, Some(3)], n)?))
 }
 
-/// A basis [count, n, 3], and how many matrices it has. The skeleton stream's is smooth: its whole numbers are kept less
-/// what their neighbours let expect. (The mesh stream's would need more bytes so, not fewer.)
+/// A basis [count, n, 3], and how many matrices it has. The skeleton stream's is smooth: its whole numbers are kept
+/// less what their neighbours let expect. (The mesh stream's would need more bytes so, not fewer.)
 pub(super) fn basis(file: &Tensors, name: &str, graph: &Graph<Vec<u32>>) -> Result<(Vec<f32>, usize)> {
     let shape = [None, Some(graph.offsets.len() - 1), Some(3)];
     if name == SKELETON_BASIS

@@ -20,8 +20,8 @@ const RATE: f64 = 5.0;
 /// mean vertex moves by at most 0.1 mm and its normal by 0.1° over the character's clips, polish and repair included.
 /// What comes out is packed by gzip. Every command and every page reads it as the model that it was made of.
 ///
-/// A character (`ctsn pack character.glb -o small.glb`) is coded by meshoptimizer: three.js reads it once GLTFLoader has
-/// its MeshoptDecoder.
+/// A character (`ctsn pack character.glb -o small.glb`) is coded by meshoptimizer: three.js reads it once GLTFLoader
+/// has its MeshoptDecoder.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// Model file (safetensors), or a character (GLB)

@@ -3,6 +3,7 @@
 mod hostile;
 mod packed;
 mod reading;
+mod small;
 mod world;
 
 use super::write::{Appearance, write_character};
