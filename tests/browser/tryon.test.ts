@@ -100,6 +100,8 @@ test('the address keeps figure, garment, fabric, pose and view', async () => {
   for (let i = 0; i < 5; i++) await page.keyboard.press('ArrowLeft');
   const shown = await capture(page);
   await expect.poll(() => page.url(), patience).toContain('pose=~');
+  // It changes a while after the last change.
+  await page.waitForTimeout(1500);
   const address = new URL(page.url());
   expect(address.searchParams.get('wear')).toBe('tshirt.denim.4a6b4f.dots');
   expect(address.searchParams.get('view')).toBe('40,20,1.5');
@@ -115,6 +117,18 @@ test('the address keeps figure, garment, fabric, pose and view', async () => {
   const broken = await site.visit('?wear=tshirt.tin.4a6b4f.dots');
   expect(await broken.page.getByRole('alert').textContent()).toContain('GARMENT.FABRIC.COLOUR.PRINT wanted');
   expect([...first.complaints, ...again.complaints]).toEqual([]);
+});
+
+test('garments that come and go leave the GPU as it was', async () => {
+  const { page, complaints } = await site.visit('?pose=idle:1&wear=tshirt.felt.4a6b4f.none');
+  const change = (garments: string[]) => ask(page, (demo, garments) => demo.wear(garments), garments);
+  const memory = () => ask(page, (demo) => demo.memory(), null);
+  for (let i = 0; i < 2; i++) for (const garments of [[], ['tshirt']]) await change(garments);
+  const before = await memory();
+  for (let i = 0; i < 8; i++) for (const garments of [[], ['tshirt']]) await change(garments);
+  expect(await memory()).toEqual(before);
+  expect(before.geometries).toBeGreaterThan(2);
+  expect(complaints).toEqual([]);
 });
 
 test('everything is reached by the keyboard, in the order in which it is seen, and has a name', async () => {

@@ -111,18 +111,8 @@ export class TryOn {
   draw(): void {
     const { dressed } = this;
     const { clip, time, duration } = dressed.character;
-    const start = performance.now();
     this.#changed = false;
-    // At rest the next picture is the last for a while: it shows what was chosen.
-    dressed.update(this.quality, this.transport.playing ? BLEND : 0);
-    this.predictions++;
-    const end = () => this.cost.add(performance.now() - start);
-    if (dressed.models.some(({ backend }) => backend === 'webgpu')) {
-      void dressed.wardrobe.settled().then(() => {
-        end();
-        this.#arrived = true;
-      });
-    } else end();
+    this.predict();
     this.#rivals.update(dressed);
     this.#maps.update(dressed, this.transport.playing && !this.#own);
     this.stage.follow(dressed.hip, dressed.head);
@@ -133,10 +123,20 @@ export class TryOn {
     this.cost.show(dressed);
   }
 
-  /** Settles when the prediction asked for last is drawn. */
-  async settled(): Promise<void> {
-    await this.dressed.wardrobe.settled();
-    this.#render();
+  /** Predicts the cloth for the pose of the figure. */
+  predict(): void {
+    const { dressed } = this;
+    const start = performance.now();
+    // At rest the next picture is the last for a while: it shows what was chosen.
+    dressed.update(this.quality, this.transport.playing ? BLEND : 0);
+    this.predictions++;
+    const end = () => this.cost.add(performance.now() - start);
+    if (dressed.models.some(({ backend }) => backend === 'webgpu')) {
+      void dressed.wardrobe.settled().then(() => {
+        end();
+        this.#arrived = true;
+      });
+    } else end();
   }
 
   /** Stops the page at a frame of a clip. */
@@ -144,7 +144,6 @@ export class TryOn {
     this.transport.play(false);
     this.quality = quality;
     this.#show(clip, frame / RATE);
-    this.draw();
   }
 
   /** Shows what an address says, as far as it does. */
