@@ -175,6 +175,8 @@ export class Cloth<M extends Material | Material[] = Material, N extends AnyClot
    * way is void.
    */
   #begin(): void {
+    // Folds that are still on their way fade in.
+    if (this.model.finest === 'coarse') this.#fade.fix(1, 0);
     this.#shown = ++this.#asked;
     if (this.#dressing.read(this)) this.#receive(this.model.predictCloth(this.#dressing.pose, this.#atOnce));
     this.#place();
@@ -189,7 +191,7 @@ export class Cloth<M extends Material | Material[] = Material, N extends AnyClot
 
   #ask(quality: Quality, every: number): void {
     this.#fade.every = every;
-    this.#fade.advance(quality);
+    this.#fade.advance(quality === 'full' ? this.model.finest : quality);
     this.#predict();
   }
 
