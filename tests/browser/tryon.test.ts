@@ -141,13 +141,16 @@ test('everything is reached by the keyboard, in the order in which it is seen, a
     if (name === '') break;
     names.push(name);
   }
-  const wanted = [/^Andy, wearing t-shirt\. Drag/, /crowd/, /T-shirt/, /Play/, /Clip/, /Time within/, /Speed/, /Fabric/, /Jersey/, /Cream/, /Pose/, /Maps/, /Copy link/, /Save picture/];
+  const wanted = [/^Andy, wearing t-shirt\. Drag or press/, /crowd/, /T-shirt/, /Play/, /Clip/, /Time within/, /Speed/, /Fabric/, /Jersey/, /Cream/, /Pose/, /Maps/, /Copy link/, /Save picture/];
   let from = 0;
   for (const pattern of wanted) {
     const at = names.findIndex((name, i) => i >= from && pattern.test(name));
     expect(at, `${String(pattern)} in ${names.slice(from).join(' | ')}`).toBeGreaterThanOrEqual(0);
     from = at + 1;
   }
+  await page.locator('#stage').focus();
+  for (const key of ['ArrowRight', 'ArrowUp', '-']) await page.keyboard.press(key);
+  await expect.poll(() => new URL(page.url()).searchParams.get('view'), patience).toBe('24,12,2.95');
   const unnamed = await page.locator('button:visible, input:visible, select:visible').evaluateAll((all) =>
     all.filter((one) => !(one.getAttribute('aria-label') || (one as HTMLInputElement).labels?.[0]?.textContent?.trim() || one.textContent?.trim())).map((one) => one.outerHTML),
   );

@@ -238,7 +238,8 @@ export class TryOn {
     this.stage.welcome(dressed.character.scene, [dressed.hip, ...bones.filter(({ name }) => LOW.test(name))]);
     this.#poser.hold(bones, dressed.hip);
     this.transport.offer(clips);
-    dressed.onBackend = () => this.#tell();
+    dressed.onModel = () => this.#tell();
+    dressed.onFailure = tell;
     this.#tell();
   }
 
@@ -249,7 +250,7 @@ export class TryOn {
     this.#fabric.show(worn.map(({ entry }) => ({ entry, look: looks.get(entry)! })));
     this.cost.tell(this.dressed);
     const names = worn.map(({ entry }) => entry.name.toLowerCase()).join(' and ') || 'nothing of ours';
-    element('stage').setAttribute('aria-label', `${entry.name}, wearing ${names}. Drag to turn, scroll to come closer.`);
+    element('stage').setAttribute('aria-label', `${entry.name}, wearing ${names}. Drag or press arrow keys to turn; scroll, plus or minus to come closer.`);
     this.onScene();
   }
 

@@ -96,6 +96,7 @@ async function start(): Promise<void> {
 /** The page's handle. */
 function offer(page: TryOn, arrange: () => void): void {
   const captured = async () => {
+    await Promise.all(page.dressed.models.map(({ complete }) => complete));
     // What was changed a moment ago waits for the next animation frame to be drawn.
     page.predict();
     await page.dressed.wardrobe.settled();

@@ -112,6 +112,8 @@ export class Wardrobe extends Group {
       this.#wanted = this.worn;
       throw failed!.reason;
     }
+    // What a model still loads, its folds, is not this call's any more: the next does not end it.
+    this.#call = new AbortController();
     settled.forEach((result, i) => result.status === 'fulfilled' && this.#garments.set(missing[i]!, result.value));
     this.#change(names);
     return true;

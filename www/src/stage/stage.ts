@@ -28,6 +28,15 @@ export interface View {
 }
 
 const FIELD = 28;
+/** Degrees around and up, and a factor of the distance. */
+const KEYS: Readonly<Record<string, readonly [number, number, number]>> = {
+  ArrowLeft: [-10, 0, 1],
+  ArrowRight: [10, 0, 1],
+  ArrowUp: [0, 6, 1],
+  ArrowDown: [0, -6, 1],
+  '+': [0, 0, 0.85],
+  '-': [0, 0, 1.18],
+};
 
 /** Renderer, camera, light and floor of the page. */
 export class Stage {
@@ -60,6 +69,7 @@ export class Stage {
     this.scene.environmentIntensity = 0.85;
     this.scene.add(this.#sun, this.#sun.target, this.floor);
     new ResizeObserver(() => this.#resize()).observe(canvas);
+    canvas.addEventListener('keydown', (event) => this.#press(event));
     this.look({ around: 14, up: 6, far: 2.5 });
   }
 
@@ -147,6 +157,15 @@ export class Stage {
   frame(margins: Margins): void {
     this.#margins = margins;
     this.#resize();
+  }
+
+  /** Arrows turn the camera, plus and minus bring it closer and away. */
+  #press(event: KeyboardEvent): void {
+    const way = KEYS[event.key];
+    if (!way) return;
+    event.preventDefault();
+    const { around, up, far } = this.view;
+    this.look({ around: around + way[0], up: Math.min(Math.max(up + way[1], -2), 85), far: Math.min(Math.max(far * way[2], 0.25), 6) });
   }
 
   #resize(): void {
