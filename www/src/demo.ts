@@ -20,7 +20,7 @@ import type { Stage } from './stage/stage.js';
 /** Predictions over which a change of quality is spread. */
 const BLEND = 12;
 /** Metres by which a garment is drawn before the one under it. */
-const LAYER = 0.015;
+const LAYER = 0.025;
 /** Bones that may touch the floor. */
 const LOW = /foot|toe|paw|hand/i;
 

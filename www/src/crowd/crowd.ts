@@ -99,6 +99,8 @@ export class Crowd {
     if (!fabric) {
       const colour = turn === 0 ? garment.colour : COLOURS[turn]!;
       this.#fabrics.set(key, (fabric = new FabricMaterial({ fabric: garment.fabric, print: garment.print, colour })));
+      // From so far no weave is seen.
+      fabric.normalMap = fabric.aoMap = null;
     }
     return fabric;
   }

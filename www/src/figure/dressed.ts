@@ -44,10 +44,10 @@ export class Dressed {
       load: async (source, options) => {
         // What was dropped on the page is kept by nobody.
         const cache = String(source).startsWith('blob:') ? undefined : 'ctsn';
-        const model = await loadModel(source, { ...options, backend: this.backend, progressive: true, cache });
+        const model: ClothModel = await loadModel(source, { ...options, progressive: true, cache });
         for (const event of ['backend', 'complete']) model.addEventListener(event, () => this.onModel());
         // What broke off leaves the drape; who took the garment off meanwhile need not know.
-        model.complete.catch((error: unknown) => model.disposed || this.onFailure(error));
+        model.complete.then(() => this.#move(model)).catch((error: unknown) => model.disposed || this.onFailure(error));
         return model;
       },
     });
@@ -96,6 +96,13 @@ export class Dressed {
   async compute(backend: BackendChoice): Promise<void> {
     this.backend = backend;
     await Promise.all(this.models.map((model) => model.setBackend(backend)));
+  }
+
+  /** Has a model compute where it is to, once it is shown: a GPU may take its time to begin. */
+  async #move(model: ClothModel): Promise<void> {
+    if (this.backend === 'cpu' || model.disposed) return;
+    await model.setBackend(this.backend);
+    this.onModel();
   }
 
   /** Has one garment more. */
