@@ -110,6 +110,8 @@ params! {
     Polish { vertices: u32, own: f32, others: f32, momentum: f32 }
     /// `Params` of pull.wgsl.
     Pull { vertices: u32 }
+    /// `Params` of ride.wgsl.
+    Ride { riders: u32, least: f32 }
     /// `Params` of skin.wgsl.
     Skin { vertices: u32, width: u32, back: u32, world: u32 }
     /// `Params` of slide.wgsl.
@@ -164,6 +166,8 @@ shaders! {
     POLISH: Polish, "polish" + [], [Read Read Read Read Write Write], [64, 1];
     /// Offsets, neighbours, squares, positions -> pulls.
     PULL: Pull, "pull" + [], [Read Read Read Read Write], [64, 1];
+    /// Corners, coordinates, positions, normals -> riders.
+    RIDE: Ride, "ride" + [], [Read Read Read Read Write], [64, 1];
     /// Exposed body, its normals, offsets, fans, seeds, displacement -> positions.
     SETTLE: Collide, "settle" + ["collide.foot", "collide.walk", "collide.triangle"], [Read Read Read Read Read Read Write], [64, 1];
     /// Rest, joints, weights, transforms -> positions.

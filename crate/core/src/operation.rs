@@ -180,6 +180,20 @@ operations! { $
         normals: W,
     }
 
+    /// Each vertex of a drawn mesh goes where its triangle of the cloth takes it. network.md §5.
+    Ride<R, W, I> {
+        /// Cloth vertices under each [w, 3].
+        corners: I,
+        /// Barycentric coordinates, then the offset along the normal, metres [w, 4].
+        coordinates: R,
+        /// Cloth [n, 3].
+        positions: R,
+        /// Its unit normals [n, 3].
+        normals: R,
+        /// [w, 3].
+        riders: W,
+    }
+
     /// Each drawn vertex takes position and normal of its cloth vertex.
     Surface<R, W, I> {
         /// Drawn vertex -> cloth vertex [d].
@@ -305,6 +319,8 @@ impl Operation<usize, usize, usize> {
             // A sum over the neighbours; a vertex: two shares, momentum, the move.
             Self::Polish(it) => 3 * it.neighbours + 6 * it.positions,
             Self::Normals(it) => 18 * it.triangles + 3 * it.positions,
+            // Two sums of three vectors, the length of one, and the offset.
+            Self::Ride(it) => 15 * it.riders,
             Self::Surface(_) => 0,
             Self::Bury(it) => buriable(it.areas).len() * it.areas * 18,
             // A walk, and six triangles around its end.

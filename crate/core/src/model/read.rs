@@ -1,6 +1,6 @@
 //! Model file -> model, checking every name, shape and index. network.md §8.
 
-use super::{Body, Cut, HostModel, Layer, Linear, Model, Reference, Sizes, Skinning, Surface, pack};
+use super::{Body, Cut, HostModel, Layer, Linear, Model, Reference, Ride, Sizes, Skinning, Surface, pack};
 use super::{CLOTH_WEIGHTS, MESH_BASIS, SKELETON_BASIS, STEPS};
 use crate::error::{Decimal, Error, Result};
 use crate::file::Tensors;
@@ -56,6 +56,7 @@ impl HostModel {
                 layers.len()
             )));
         }
+        let surface = surface(file, Ride::count(file)?.unwrap_or(n))?;
         let steps = description.polish.map_or(STEPS, |steps| steps as usize);
         Ok(Model {
             sizes: Sizes { vertices: n, joints, embedding: m, basis: k, features, heads },
@@ -71,7 +72,8 @@ impl HostModel {
             vertex_mlp: mlp(file, "vertex", features, Some(k))?,
             mesh_stream: mesh_basis.iter().any(|value| *value != 0.0),
             mesh_basis,
-            surface: surface(file, n)?,
+            ride: Ride::read(file, n, surface.as_ref())?,
+            surface,
             body: Body::read(file, n, joints)?,
             training: file.metadata.get("training").cloned(),
             rig: Arc::new(rig(file, description)?),
@@ -245,6 +247,7 @@ fn layer(file: &Tensors, l: usize, inputs: usize) -> Result<Layer<Vec<f32>>> {
     })
 }
 
+/// What draws a mesh of `n` vertices: the cloth, or what rides on it.
 fn surface(file: &Tensors, n: usize) -> Result<Option<Surface>> {
     if !file.tensors.contains_key("draw.vertex") {
         return Ok(None);

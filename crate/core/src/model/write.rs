@@ -65,6 +65,9 @@ impl HostModel {
         self.write_cloth(&mut writer);
         self.write_reference(&mut writer);
         self.write_network(&mut writer);
+        if let Some(ride) = &self.ride {
+            ride.write(&mut writer);
+        }
         if let Some(cut) = &self.cut {
             cut.write(&mut writer);
         }

@@ -2,7 +2,7 @@
 
 use super::simulate::PINCHED;
 use anyhow::{Context, Result};
-use ctsn_cloth::garment::{Cut, Rest, default_kind, drape, load, rehearse, shell};
+use ctsn_cloth::garment::{Cut, Resample, Rest, default_kind, drape, load, rehearse, shell};
 use ctsn_rig::Garment;
 use ctsn_rig::gltf;
 use std::path::{Path, PathBuf};
@@ -29,21 +29,24 @@ pub struct Arguments {
     /// Check this garment instead (glTF)
     #[arg(long, conflicts_with = "output")]
     check: Option<PathBuf>,
+    /// The mesh that --check simulates, as of `simulate`: auto, never, or the length of an edge in mm
+    #[arg(long, value_name = "WHEN", default_value_t = Resample::Auto, requires = "check")]
+    resample: Resample,
     #[command(flatten)]
     cut: Cut,
 }
 
 pub fn run(arguments: &Arguments) -> Result<()> {
     if let Some(garment) = &arguments.check {
-        return check(&arguments.character, garment);
+        return check(&arguments.character, garment, arguments.resample);
     }
     arguments.output.as_ref().map_or(Ok(()), |output| make(&arguments.character, &arguments.cut, output))
 }
 
 /// Says what is wrong with a garment and what of it is mended; fails on what makes it unusable.
-fn check(character: &Path, garment: &Path) -> Result<()> {
+fn check(character: &Path, garment: &Path, resample: Resample) -> Result<()> {
     let character = gltf::read_character(character, 1.0)?;
-    let fitted = load(garment, &character)?;
+    let fitted = load(garment, &character, resample)?;
     fitted.mended.iter().for_each(|mend| println!("mended: {mend}"));
     fitted.warnings.iter().for_each(|warning| println!("{warning}"));
     let moved = rehearse(&character, &fitted.garment, PINCHED).with_context(|| garment.display().to_string())?;

@@ -2,7 +2,7 @@
 
 use super::{bar, file_name, model, remaining};
 use anyhow::{Result, bail};
-use ctsn_cloth::garment::{self, Fitted};
+use ctsn_cloth::garment::{self, Fitted, Resample};
 use ctsn_cloth::simulate::{Material, Settings};
 use ctsn_rig::gltf;
 use ctsn_rig::{Character, Garment};
@@ -63,6 +63,10 @@ pub struct Options {
     /// Clip to use, by name; may be given several times. Default: all
     #[arg(long = "clip")]
     pub clips: Vec<String>,
+    /// Simulate on an even mesh made from the garment's, which then rides on it to be drawn: auto (where its own is
+    /// coarser than 15 mm, uneven, or of several layers), never, or the length of an edge in mm
+    #[arg(long, value_name = "WHEN", default_value_t = Resample::Auto)]
+    pub resample: Resample,
     #[arg(long, default_value = "cotton", help = format!("Material of the cloth: {}", Material::names()))]
     pub material: String,
     /// Simulate this many poses a second time, every joint turned by half a degree, to measure the noise of the truth
@@ -86,7 +90,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
 pub fn along(character: &Character, arguments: &Arguments, until: Option<Instant>) -> Result<()> {
     let Arguments { options, output, shard, .. } = arguments;
     let material = Material::named(&options.material)?;
-    let garment = fitted(&arguments.garment, character)?;
+    let garment = fitted(&arguments.garment, character, options.resample)?;
     let teacher = options.from.as_deref().map(model).transpose()?;
     let names = [file_name(&arguments.character), file_name(&arguments.garment)];
     println!("{} on {}: {} vertices", names[1], names[0], garment.mesh.positions.len());
@@ -115,8 +119,8 @@ pub fn along(character: &Character, arguments: &Arguments, until: Option<Instant
 }
 
 /// Reads a garment, and says what was mended and what may be wrong.
-fn fitted(path: &Path, character: &Character) -> Result<Garment> {
-    let Fitted { garment, mended, warnings } = garment::load(path, character)?;
+fn fitted(path: &Path, character: &Character, resample: Resample) -> Result<Garment> {
+    let Fitted { garment, mended, warnings } = garment::load(path, character, resample)?;
     mended.iter().for_each(|mend| eprintln!("  {}: mended: {mend}", path.display()));
     warnings.iter().for_each(|warning| eprintln!("  {}: {warning}", path.display()));
     Ok(garment)
@@ -126,7 +130,7 @@ fn fitted(path: &Path, character: &Character) -> Result<Garment> {
 pub fn unsimulated(character: &Path, garment: &Path) -> Result<Dataset> {
     let names = [file_name(character), file_name(garment)];
     let character = gltf::read_character(character, RATE)?;
-    let cloth = fitted(garment, &character)?;
+    let cloth = fitted(garment, &character, Resample::Auto)?;
     println!("{} on {}: {} vertices; draping it", names[1], names[0], cloth.mesh.positions.len());
     let request = Request {
         character: &character,

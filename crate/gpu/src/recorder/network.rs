@@ -2,9 +2,9 @@
 
 use super::{Id, IndexId, Record, Recorder};
 use crate::pack::{self, whole};
-use ctsn_core::cpu::network::polish;
+use ctsn_core::cpu::network::{polish, ride};
 use ctsn_core::operation::{
-    Activation, Attend, Blend, BodyFrame, Features, Linear, Normals, Polish, Pull, Skin, Space, Surface,
+    Activation, Attend, Blend, BodyFrame, Features, Linear, Normals, Polish, Pull, Ride, Skin, Space, Surface,
 };
 use ctsn_core::pose::Frame;
 use ctsn_shaders as shaders;
@@ -193,6 +193,22 @@ impl Record for Normals<Id, Id, IndexId> {
         ];
         let params = shaders::Normals { vertices: n as u32 };
         recorder.dispatch(&shaders::NORMALS, params, &operands, [n, 1], normals);
+    }
+}
+
+impl Record for Ride<Id, Id, IndexId> {
+    fn record(self, recorder: &mut Recorder) {
+        let Self { corners, coordinates, positions, normals, riders } = self;
+        let operands = [
+            recorder.indexed(corners),
+            recorder.rows(coordinates, 4, 4),
+            recorder.rows(positions, 3, 3),
+            recorder.rows(normals, 3, 3),
+            recorder.rows(riders, 3, 3),
+        ];
+        let count = recorder.length(riders) / 3;
+        let params = shaders::Ride { riders: count as u32, least: ride::LEAST };
+        recorder.dispatch(&shaders::RIDE, params, &operands, [count, 1], riders);
     }
 }
 

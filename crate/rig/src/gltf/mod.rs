@@ -197,7 +197,9 @@ fn garment(file: &File, scale: f64) -> Read<(Garment, Source)> {
     if welded.mesh.triangles.is_empty() {
         return Err("holds no garment: no mesh has a triangle with an area".to_string());
     }
-    Ok((Garment { mesh: welded.mesh, surface: welded.surface, pins: welded.pins }, welded.source))
+    let own = file.document.as_json().asset.generator.as_deref() == Some(write::GENERATOR);
+    let source = Source { own, ..welded.source };
+    Ok((Garment { mesh: welded.mesh, surface: welded.surface, pins: welded.pins, drawn: None }, source))
 }
 
 #[cfg(test)]

@@ -9,6 +9,7 @@ mod topology;
 pub(super) use fit::{INWARDS, Outside, Place, inside, inwards, mistaken};
 pub(super) use topology::{HOLE_EDGES, HOLE_SHARE, SLIVER};
 
+use super::resampling::{Resample, resample};
 use super::{hold, mend};
 use crate::simulate::{Elements, Material, Settings, Simulator};
 use crate::{Error, Result};
@@ -63,16 +64,18 @@ fn crossings(garment: &Garment, source: &Source, findings: &mut Findings) {
     }
 }
 
-/// Mends a garment, finds what holds it, and checks it. What makes it unusable is an error, which names all that does.
+/// Mends a garment, makes the mesh to simulate where `wanted`, finds what holds it, and checks it. What makes it
+/// unusable is an error, which names all that does.
 ///
 /// Whatever simulates a garment takes it from here, so that what this accepts is what is simulated.
-pub fn fit(character: &Character, garment: Garment, source: Source) -> Result<Fitted> {
-    fit_beside(&Outside::new(character)?, garment, source)
+pub fn fit(character: &Character, garment: Garment, source: Source, wanted: Resample) -> Result<Fitted> {
+    fit_beside(&Outside::new(character)?, garment, source, wanted)
 }
 
 /// The same beside a body whose outer skin is known.
-pub(super) fn fit_beside(outside: &Outside, garment: Garment, source: Source) -> Result<Fitted> {
-    let (mut garment, source, mut mended) = mend::mend(garment, source);
+pub(super) fn fit_beside(outside: &Outside, garment: Garment, source: Source, wanted: Resample) -> Result<Fitted> {
+    let (garment, source, mut mended) = mend::mend(garment, source);
+    let (mut garment, source) = resample(outside, garment, source, wanted, &mut mended);
     let mut findings = Findings::default();
     mend::place(outside, &mut garment, &source, &mut mended, &mut findings);
     // What is lifted or smoothed may leave a sliver where cloth was folded.
@@ -95,9 +98,9 @@ pub(super) fn fit_beside(outside: &Outside, garment: Garment, source: Source) ->
 }
 
 /// Reads a garment and fits it.
-pub fn load(path: &Path, character: &Character) -> Result<Fitted> {
+pub fn load(path: &Path, character: &Character, wanted: Resample) -> Result<Fitted> {
     let (garment, source) = read_garment(path, character.metres_per_unit)?;
-    fit(character, garment, source).map_err(|error| match error {
+    fit(character, garment, source, wanted).map_err(|error| match error {
         Error::Garment(reason) => Error::File { path: path.into(), reason },
         other => other,
     })

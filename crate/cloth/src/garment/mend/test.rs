@@ -3,7 +3,7 @@
 
 use crate::garment::check::{Fitted, Outside, SLIVER, fit_beside};
 use crate::garment::test::person;
-use crate::garment::{Cut, Kind, quality, rehearse, shell};
+use crate::garment::{Cut, Kind, Resample, quality, rehearse, shell};
 use crate::simulate::{Elements, Material, Settings, Simulator};
 use ctsn_rig::gltf::Source;
 use ctsn_rig::mesh::triangle::least_angle;
@@ -23,7 +23,7 @@ fn cut(kind: Kind) -> Garment {
 
 fn fitted(garment: Garment) -> crate::Result<Fitted> {
     let numbers = (100..100 + garment.mesh.positions.len() as u32).collect();
-    fit_beside(&OUTSIDE, garment, Source { numbers, ..Source::default() })
+    fit_beside(&OUTSIDE, garment, Source { numbers, ..Source::default() }, Resample::Never)
 }
 
 /// The sound garment after `spoil`, mended; what was said must hold all words.
