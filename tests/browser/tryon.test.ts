@@ -91,7 +91,7 @@ test('what is dropped is shown; what is broken is told in words, and what was sh
 });
 
 test('the address keeps figure, garment, fabric, pose and view', async () => {
-  const first = await site.visit('?wear=tshirt.denim.4a6b4f.dots&view=40,20,1.5');
+  const first = await site.visit('?wear=tshirt.denim.4a6b4f.dots&view=40,20,1.5,0.2');
   const { page } = first;
   await page.getByRole('button', { name: 'Pause' }).click();
   await open(page, 'Pose');
@@ -104,7 +104,7 @@ test('the address keeps figure, garment, fabric, pose and view', async () => {
   await page.waitForTimeout(1500);
   const address = new URL(page.url());
   expect(address.searchParams.get('wear')).toBe('tshirt.denim.4a6b4f.dots');
-  expect(address.searchParams.get('view')).toBe('40,20,1.5');
+  expect(address.searchParams.get('view')).toBe('40,20,1.5,0.2');
   await site.leave();
   const again = await site.visit(address.search);
   const found = await capture(again.page);
@@ -149,8 +149,8 @@ test('everything is reached by the keyboard, in the order in which it is seen, a
     from = at + 1;
   }
   await page.locator('#stage').focus();
-  for (const key of ['ArrowRight', 'ArrowUp', '-']) await page.keyboard.press(key);
-  await expect.poll(() => new URL(page.url()).searchParams.get('view'), patience).toBe('24,12,2.95');
+  for (const key of ['ArrowRight', 'ArrowUp', '-', 'PageUp']) await page.keyboard.press(key);
+  await expect.poll(() => new URL(page.url()).searchParams.get('view'), patience).toBe('24,12,2.95,0.1');
   const unnamed = await page.locator('button:visible, input:visible, select:visible').evaluateAll((all) =>
     all.filter((one) => !(one.getAttribute('aria-label') || (one as HTMLInputElement).labels?.[0]?.textContent?.trim() || one.textContent?.trim())).map((one) => one.outerHTML),
   );

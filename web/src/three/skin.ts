@@ -150,6 +150,8 @@ function insideOf({ triangles, vertexCount }: AnyClothModel, rest: Float32Array)
     if (count === 1) inside[a] = inside[b] = 0;
     return { a, b, far: Math.hypot(...[0, 1, 2].map((axis) => rest[3 * a + axis]! - rest[3 * b + axis]!)) };
   });
+  // A mesh without a rim is a shell around the cloth's edges, too: nothing says where those are.
+  if (!inside.includes(0)) inside.fill(0);
   for (let changed = true; changed; ) {
     changed = false;
     for (const { a, b, far } of all) {
