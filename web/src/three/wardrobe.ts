@@ -198,7 +198,7 @@ export class Wardrobe extends Group {
     this.#fade(0);
   }
 
-  /** New garments come to stand before the old ones; these go when the new hide them. So the character is never bare. */
+  /** New garments come to stand before the old ones, which go when the new hide them: nobody is ever bare. */
   #fade(seconds: number): void {
     const { fade = 1 / 3 } = this.#options;
     // Half of the time for either way.
