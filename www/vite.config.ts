@@ -1,4 +1,5 @@
-import { existsSync, readFileSync, statSync } from 'node:fs';
+import { createHash } from 'node:crypto';
+import { existsSync, readFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 import { defineConfig, type Plugin } from 'vite';
 import type { Figure } from './src/cast/catalogue.js';
@@ -12,7 +13,12 @@ type Listed = Named<Figure> & { garments: Named<Figure['garments'][number]>[] };
 /** The cast as a module: of what `cast.json` lists, that of which the files are in `public`. */
 function cast(): Plugin {
   const find = (name: string, type: string, file = `cast/${name}.${type}`) => {
-    return existsSync(here(`public/${file}`)) ? { file, bytes: statSync(here(`public/${file}`)).size } : undefined;
+    const path = here(`public/${file}`);
+    if (!existsSync(path)) return undefined;
+    const content = readFileSync(path);
+    // A new version has a new address: what a browser keeps of the old one is not asked for.
+    const version = createHash('sha256').update(content).digest('hex').slice(0, 8);
+    return { file: `${file}?v=${version}`, bytes: content.length };
   };
   const read = (): Figure[] => {
     const listed = JSON.parse(readFileSync(here('cast.json'), 'utf8')) as Listed[];

@@ -1,13 +1,17 @@
 // Fifty dressed characters on one page, in headless Chromium with its software renderer.
-import { afterAll, expect, beforeAll, test } from 'vitest';
+import type { Page } from 'playwright-core';
+import { afterAll, afterEach, beforeAll, expect, test } from 'vitest';
 import { out, Site } from './page.js';
 
 let site: Site;
 beforeAll(async () => (site = await Site.open()));
+afterEach(() => site.leave());
 afterAll(() => site?.close());
 
 test('fifty in the coarse quality; auto gives some of them more, and what is out of sight nothing', async () => {
-  const { page, complaints } = await site.visit('crowd.html?quality=coarse');
+  // Drawn by the processor, every pixel counts.
+  const small = (bare: Page) => bare.setViewportSize({ width: 640, height: 400 });
+  const { page, complaints } = await site.visit('crowd.html?figure=andy&quality=coarse', small);
   const frames = (count: number) => page.waitForFunction((count) => window.ctsnCrowd!.frames >= count, count);
   const tally = () => page.evaluate(() => window.ctsnCrowd!.tally);
   await frames(4);
@@ -26,5 +30,13 @@ test('fifty in the coarse quality; auto gives some of them more, and what is out
   expect(auto.full).toBeGreaterThan(0);
   expect(auto.full).toBeLessThan(coarse);
   await page.screenshot({ path: `${out}/crowd.png` });
+  expect(complaints).toEqual([]);
+});
+
+test('on WebGPU every cloth is drawn from the buffers that it is predicted into', async () => {
+  const { page, complaints, files } = await site.visit('crowd.html?figure=andy&count=2&renderer=webgpu');
+  await page.waitForFunction(() => window.ctsnCrowd!.zeroCopy === 2 && window.ctsnCrowd!.frames >= 3);
+  expect(files).toContainEqual(expect.stringMatching(/^ctsn_gpu_bg.*\.wasm$/));
+  await page.screenshot({ path: `${out}/crowd-webgpu.png` });
   expect(complaints).toEqual([]);
 });

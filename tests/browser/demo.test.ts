@@ -129,7 +129,7 @@ test('?pose=CLIP:FRAME stops the page at that frame of the clip', async () => {
 });
 
 test('a failure is told on the page: no model, a broken model, no such clip or figure', async () => {
-  const shirt = '**/tshirt.safetensors';
+  const shirt = '**/tshirt.safetensors?*';
   const missing = await site.visit('', (page) => page.route(shirt, (route) => route.fulfill({ status: 404 })));
   expect(await missing.page.getByRole('alert').textContent()).toMatch(/garment "tshirt".*HTTP 404/);
   const noModel = { body: 'no model at all' };
@@ -149,10 +149,12 @@ test('what only WebGPU needs is fetched for a device, and never without one', as
   expect(onCpu.files).toContainEqual(expect.stringMatching(/^ctsn_relaxed_bg.*\.wasm$/));
   expect(ofGpu(onCpu.files)).toEqual([]);
   expect(onCpu.files.filter((name) => name.includes('inline'))).toEqual([]);
+  await site.leave();
   const none = 'GPU.prototype.requestAdapter = async () => null';
   const without = await site.visit('?backend=auto', (bare) => bare.addInitScript(none));
   await expect.poll(() => without.page.textContent('#reason'), patience).toContain('finds no adapter');
   expect(ofGpu(without.files)).toEqual([]);
+  await site.leave();
   const onGpu = await site.visit('?backend=webgpu');
   await expect.poll(() => onGpu.page.textContent('#backend'), patience).toMatch(/^WebGPU, ./);
   expect(ofGpu(onGpu.files).sort()).toEqual(['js', 'wasm']);

@@ -91,7 +91,7 @@ test('what is dropped is shown; what is broken is told in words, and what was sh
 });
 
 test('the address keeps figure, garment, fabric, pose and view', async () => {
-  const first = await site.visit('?wear=tshirt.denim.4a6b4f.dots&view=40,20,1.5');
+  const first = await site.visit('?wear=tshirt.denim.4a6b4f.dots&view=40,20,1.5,0.2');
   const { page } = first;
   await page.getByRole('button', { name: 'Pause' }).click();
   await open(page, 'Pose');
@@ -100,9 +100,11 @@ test('the address keeps figure, garment, fabric, pose and view', async () => {
   for (let i = 0; i < 5; i++) await page.keyboard.press('ArrowLeft');
   const shown = await capture(page);
   await expect.poll(() => page.url(), patience).toContain('pose=~');
+  // It changes a while after the last change.
+  await page.waitForTimeout(1500);
   const address = new URL(page.url());
   expect(address.searchParams.get('wear')).toBe('tshirt.denim.4a6b4f.dots');
-  expect(address.searchParams.get('view')).toBe('40,20,1.5');
+  expect(address.searchParams.get('view')).toBe('40,20,1.5,0.2');
   await site.leave();
   const again = await site.visit(address.search);
   const found = await capture(again.page);
@@ -117,6 +119,18 @@ test('the address keeps figure, garment, fabric, pose and view', async () => {
   expect([...first.complaints, ...again.complaints]).toEqual([]);
 });
 
+test('garments that come and go leave the GPU as it was', async () => {
+  const { page, complaints } = await site.visit('?pose=idle:1&wear=tshirt.felt.4a6b4f.none');
+  const change = (garments: string[]) => ask(page, (demo, garments) => demo.wear(garments), garments);
+  const memory = () => ask(page, (demo) => demo.memory(), null);
+  for (let i = 0; i < 2; i++) for (const garments of [[], ['tshirt']]) await change(garments);
+  const before = await memory();
+  for (let i = 0; i < 8; i++) for (const garments of [[], ['tshirt']]) await change(garments);
+  expect(await memory()).toEqual(before);
+  expect(before.geometries).toBeGreaterThan(2);
+  expect(complaints).toEqual([]);
+});
+
 test('everything is reached by the keyboard, in the order in which it is seen, and has a name', async () => {
   const { page, complaints } = await site.visit('?pose=idle:1');
   const names: string[] = [];
@@ -127,13 +141,16 @@ test('everything is reached by the keyboard, in the order in which it is seen, a
     if (name === '') break;
     names.push(name);
   }
-  const wanted = [/^Andy, wearing t-shirt\. Drag/, /crowd/, /T-shirt/, /Play/, /Clip/, /Time within/, /Speed/, /Fabric/, /Jersey/, /Cream/, /Pose/, /Maps/, /Copy link/, /Save picture/];
+  const wanted = [/^Andy, wearing t-shirt\. Drag or press/, /crowd/, /T-shirt/, /Play/, /Clip/, /Time within/, /Speed/, /Fabric/, /Jersey/, /Cream/, /Pose/, /Maps/, /Copy link/, /Save picture/];
   let from = 0;
   for (const pattern of wanted) {
     const at = names.findIndex((name, i) => i >= from && pattern.test(name));
     expect(at, `${String(pattern)} in ${names.slice(from).join(' | ')}`).toBeGreaterThanOrEqual(0);
     from = at + 1;
   }
+  await page.locator('#stage').focus();
+  for (const key of ['ArrowRight', 'ArrowUp', '-', 'PageUp']) await page.keyboard.press(key);
+  await expect.poll(() => new URL(page.url()).searchParams.get('view'), patience).toBe('24,12,2.95,0.1');
   const unnamed = await page.locator('button:visible, input:visible, select:visible').evaluateAll((all) =>
     all.filter((one) => !(one.getAttribute('aria-label') || (one as HTMLInputElement).labels?.[0]?.textContent?.trim() || one.textContent?.trim())).map((one) => one.outerHTML),
   );

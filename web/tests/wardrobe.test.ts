@@ -106,6 +106,20 @@ test('of calls that race the last one wins, and nothing is left of the others', 
   expect(wardrobe.worn).toEqual(['trousers']);
 });
 
+test('a call that was answered is not ended by the next: folds may still be on their way', async () => {
+  const signals: AbortSignal[] = [];
+  const load = (source: ModelSource, { signal }: WearOptions) => {
+    signals.push(signal!);
+    return loadModel(source);
+  };
+  const { wardrobe } = await wardrobeOf({ load });
+  await wardrobe.wear('shirt');
+  const overtaken = wardrobe.wear('trousers');
+  await wardrobe.wear('dress');
+  expect([await overtaken, ...signals.map(({ aborted }) => aborted)]).toEqual([false, false, true, false]);
+  wardrobe.dispose();
+});
+
 test('what is refused names the garment, and what was worn stays', async () => {
   const garments = { ...sources, broken: new Uint8Array(80), gone: new URL('file:///no/such/model') };
   const { wardrobe, character } = await wardrobeOf({}, garments);

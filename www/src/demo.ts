@@ -20,7 +20,7 @@ import type { Stage } from './stage/stage.js';
 /** Predictions over which a change of quality is spread. */
 const BLEND = 12;
 /** Metres by which a garment is drawn before the one under it. */
-const LAYER = 0.015;
+const LAYER = 0.025;
 /** Bones that may touch the floor. */
 const LOW = /foot|toe|paw|hand/i;
 
@@ -111,18 +111,8 @@ export class TryOn {
   draw(): void {
     const { dressed } = this;
     const { clip, time, duration } = dressed.character;
-    const start = performance.now();
     this.#changed = false;
-    // At rest the next picture is the last for a while: it shows what was chosen.
-    dressed.update(this.quality, this.transport.playing ? BLEND : 0);
-    this.predictions++;
-    const end = () => this.cost.add(performance.now() - start);
-    if (dressed.models.some(({ backend }) => backend === 'webgpu')) {
-      void dressed.wardrobe.settled().then(() => {
-        end();
-        this.#arrived = true;
-      });
-    } else end();
+    this.predict();
     this.#rivals.update(dressed);
     this.#maps.update(dressed, this.transport.playing && !this.#own);
     this.stage.follow(dressed.hip, dressed.head);
@@ -133,10 +123,20 @@ export class TryOn {
     this.cost.show(dressed);
   }
 
-  /** Settles when the prediction asked for last is drawn. */
-  async settled(): Promise<void> {
-    await this.dressed.wardrobe.settled();
-    this.#render();
+  /** Predicts the cloth for the pose of the figure. */
+  predict(): void {
+    const { dressed } = this;
+    const start = performance.now();
+    // At rest the next picture is the last for a while: it shows what was chosen.
+    dressed.update(this.quality, this.transport.playing ? BLEND : 0);
+    this.predictions++;
+    const end = () => this.cost.add(performance.now() - start);
+    if (dressed.models.some(({ backend }) => backend === 'webgpu')) {
+      void dressed.wardrobe.settled().then(() => {
+        end();
+        this.#arrived = true;
+      });
+    } else end();
   }
 
   /** Stops the page at a frame of a clip. */
@@ -144,7 +144,6 @@ export class TryOn {
     this.transport.play(false);
     this.quality = quality;
     this.#show(clip, frame / RATE);
-    this.draw();
   }
 
   /** Shows what an address says, as far as it does. */
@@ -239,7 +238,8 @@ export class TryOn {
     this.stage.welcome(dressed.character.scene, [dressed.hip, ...bones.filter(({ name }) => LOW.test(name))]);
     this.#poser.hold(bones, dressed.hip);
     this.transport.offer(clips);
-    dressed.onBackend = () => this.#tell();
+    dressed.onModel = () => this.#tell();
+    dressed.onFailure = tell;
     this.#tell();
   }
 
@@ -250,7 +250,7 @@ export class TryOn {
     this.#fabric.show(worn.map(({ entry }) => ({ entry, look: looks.get(entry)! })));
     this.cost.tell(this.dressed);
     const names = worn.map(({ entry }) => entry.name.toLowerCase()).join(' and ') || 'nothing of ours';
-    element('stage').setAttribute('aria-label', `${entry.name}, wearing ${names}. Drag to turn, scroll to come closer.`);
+    element('stage').setAttribute('aria-label', `${entry.name}, wearing ${names}. Drag or press arrow keys to turn; scroll, plus or minus to come closer.`);
     this.onScene();
   }
 

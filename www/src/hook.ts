@@ -21,8 +21,8 @@ export interface Capture {
 }
 
 /**
- * `window.ctsnDemo`: the page's handle for tests and for the curious. In the address, `?figure=`, `?wear=`, `?pose=` and
- * `?view=` say what is shown (share/address.ts), and `?backend=cpu|webgpu|auto` where it is computed.
+ * `window.ctsnDemo`: the page's handle for tests and for the curious. In the address, `?figure=`, `?wear=`, `?pose=`
+ * and `?view=` say what is shown (share/address.ts), and `?backend=cpu|webgpu|auto` where it is computed.
  */
 export interface Demo {
   /** What went wrong, if anything did. */

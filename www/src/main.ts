@@ -96,9 +96,10 @@ async function start(): Promise<void> {
 /** The page's handle. */
 function offer(page: TryOn, arrange: () => void): void {
   const captured = async () => {
-    // What was changed a moment ago waits for the next animation frame.
-    page.draw();
-    await page.settled();
+    await Promise.all(page.dressed.models.map(({ complete }) => complete));
+    // What was changed a moment ago waits for the next animation frame to be drawn.
+    page.predict();
+    await page.dressed.wardrobe.settled();
     return capture(page);
   };
   Object.defineProperties(hook, {

@@ -32,8 +32,8 @@ const IN_FLIGHT = 2;
 export class Cloth<M extends Material | Material[] = Material, N extends AnyClothModel = ClothModel> extends Mesh<BufferGeometry, M> {
   override readonly type: string = 'Cloth';
   /**
-   * How much of the network it takes. It may change at any time, and blends. `auto`: what a `ClothScheduler` says; without
-   * one, `full`.
+   * How much of the network it takes. It may change at any time, and blends. `auto`: what a `ClothScheduler` says;
+   * without one, `full`.
    */
   quality: Quality | 'auto' = 'full';
   readonly #renderer: object | undefined;

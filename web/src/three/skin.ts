@@ -112,7 +112,7 @@ export async function coveredSkin({ model, bones }: Cloth<Material, AnyClothMode
 
 /** Number of the cell of a grid in which a point is; the grid ends after a hundred metres. */
 const cellOf = (x: number, y: number, z: number) =>
-  [x, y, z].reduce((key, value) => 4096 * key + Math.floor(value / REACH) + 2048, 0);
+  (4096 * (Math.floor(x / REACH) + 2048) + Math.floor(y / REACH) + 2048) * 4096 + Math.floor(z / REACH) + 2048;
 
 /** The garment at rest on the character as it was bound [3·n], metres. */
 async function bindPose(model: AnyClothModel): Promise<Float32Array> {
@@ -145,21 +145,21 @@ function insideOf({ triangles, vertexCount }: AnyClothModel, rest: Float32Array)
     edges.set(key, (edges.get(key) ?? 0) + 1);
   }
   const inside = new Float32Array(vertexCount).fill(Infinity);
-  const all = [...edges].map(([key, count]) => ({ a: Math.floor(key / vertexCount), b: key % vertexCount, count }));
-  for (const { a, b, count } of all) if (count === 1) inside[a] = inside[b] = 0;
-  const length = (a: number, b: number) =>
-    Math.hypot(...[0, 1, 2].map((axis) => rest[3 * a + axis]! - rest[3 * b + axis]!));
-  // Beyond the margin it matters no more how far.
+  const all = [...edges].map(([key, count]) => {
+    const [a, b] = [Math.floor(key / vertexCount), key % vertexCount];
+    if (count === 1) inside[a] = inside[b] = 0;
+    return { a, b, far: Math.hypot(...[0, 1, 2].map((axis) => rest[3 * a + axis]! - rest[3 * b + axis]!)) };
+  });
+  // A mesh without a rim is a shell around the cloth's edges, too: nothing says where those are.
+  if (!inside.includes(0)) inside.fill(0);
   for (let changed = true; changed; ) {
     changed = false;
-    for (const { a, b } of all) {
-      if (Math.min(inside[a]!, inside[b]!) > MARGIN) continue;
-      const far = length(a, b);
-      for (const [from, to] of [[a, b], [b, a]] as const) {
-        if (!(inside[from]! + far < inside[to]! - 1e-6)) continue;
-        inside[to] = inside[from]! + far;
-        changed = true;
-      }
+    for (const { a, b, far } of all) {
+      const [near, other] = inside[a]! < inside[b]! ? [a, b] : [b, a];
+      // Beyond the margin it matters no more how far.
+      if (inside[near]! > MARGIN || !(inside[near]! + far < inside[other]! - 1e-6)) continue;
+      inside[other] = inside[near]! + far;
+      changed = true;
     }
   }
   return inside;

@@ -112,6 +112,8 @@ export class Wardrobe extends Group {
       this.#wanted = this.worn;
       throw failed!.reason;
     }
+    // What a model still loads, its folds, is not this call's any more: the next does not end it.
+    this.#call = new AbortController();
     settled.forEach((result, i) => result.status === 'fulfilled' && this.#garments.set(missing[i]!, result.value));
     this.#change(names);
     return true;
@@ -196,7 +198,7 @@ export class Wardrobe extends Group {
     this.#fade(0);
   }
 
-  /** New garments come to stand before the old ones; these go when the new hide them. So the character is never bare. */
+  /** New garments come to stand before the old ones, which go when the new hide them: nobody is ever bare. */
   #fade(seconds: number): void {
     const { fade = 1 / 3 } = this.#options;
     // Half of the time for either way.

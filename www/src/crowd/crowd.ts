@@ -1,12 +1,13 @@
 import type { ClothModel, Quality } from 'ctsn';
 import { Cloth, ClothScheduler } from 'ctsn/three';
-import { AnimationMixer, Fog, NeutralToneMapping, PerspectiveCamera, Scene, SkinnedMesh, WebGLRenderer } from 'three';
+import { AnimationMixer, Fog, NeutralToneMapping, PerspectiveCamera, Scene, SkinnedMesh } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { clone } from 'three/addons/utils/SkeletonUtils.js';
 import type { GarmentEntry } from '../cast/catalogue.js';
 import { FabricMaterial } from '../fabric/material.js';
 import type { Character } from '../figure/character.js';
 import { createStudio, createSun } from '../stage/light.js';
+import type { createRenderer } from './renderer.js';
 
 /** Metres between neighbours. */
 const APART = 1.5;
@@ -21,7 +22,7 @@ export interface Pair {
 
 /** Many dressed copies of a few characters, each in a motion of its own. */
 export class Crowd {
-  readonly renderer: WebGLRenderer;
+  readonly renderer: Awaited<ReturnType<typeof createRenderer>>;
   readonly scheduler = new ClothScheduler();
   readonly #scene = new Scene();
   readonly #camera = new PerspectiveCamera(38, 1, 0.1, 80);
@@ -31,8 +32,9 @@ export class Crowd {
   readonly #fabrics = new Map<string, FabricMaterial>();
 
   /** So many figures, pair after pair in turn. */
-  constructor(canvas: HTMLCanvasElement, pairs: readonly Pair[], count: number) {
-    this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
+  constructor(renderer: Crowd['renderer'], pairs: readonly Pair[], count: number) {
+    const canvas = renderer.domElement;
+    this.renderer = renderer;
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.renderer.toneMapping = NeutralToneMapping;
     this.#camera.position.set(2.2, 2.3, 5.5);
@@ -52,6 +54,11 @@ export class Crowd {
     this.#resize(canvas);
   }
 
+  /** How many cloths are drawn from the buffers that they are predicted into. */
+  get zeroCopy(): number {
+    return this.#cloths.filter(({ zeroCopy }) => zeroCopy).length;
+  }
+
   /** The quality of all. */
   choose(quality: Quality | 'auto'): void {
     for (const cloth of this.#cloths) cloth.quality = quality;
@@ -62,7 +69,7 @@ export class Crowd {
     this.#controls.update();
     for (const mixer of this.#mixers) mixer.update(seconds);
     this.scheduler.update(this.#camera);
-    this.renderer.render(this.#scene, this.#camera);
+    void this.renderer.render(this.#scene, this.#camera);
   }
 
   /** Figure `i`, the `turn`-th of its pair. */
@@ -78,7 +85,7 @@ export class Crowd {
     const clip = character.motion[(7 * i) % character.motion.length]!;
     mixer.clipAction(clip).play();
     mixer.setTime((i * 0.37) % clip.duration);
-    const cloth = new Cloth(model, copy, this.#fabric(garment, turn % COLOURS.length));
+    const cloth = new Cloth(model, copy, this.#fabric(garment, turn % COLOURS.length), { renderer: this.renderer });
     cloth.material.measure(cloth.geometry);
     this.#mixers.push(mixer);
     this.#cloths.push(cloth);
@@ -92,6 +99,8 @@ export class Crowd {
     if (!fabric) {
       const colour = turn === 0 ? garment.colour : COLOURS[turn]!;
       this.#fabrics.set(key, (fabric = new FabricMaterial({ fabric: garment.fabric, print: garment.print, colour })));
+      // From so far no weave is seen.
+      fabric.normalMap = fabric.aoMap = null;
     }
     return fabric;
   }

@@ -1,5 +1,7 @@
-// A crowd of the whole cast: `?count=50` says how many, `?figure=andy` of whom alone, `?quality=` and `?budget=` preset the controls.
+// A crowd of the whole cast: `?count=50` says how many, `?figure=andy` of whom alone, `?quality=` and `?budget=` preset
+// the controls, `?renderer=webgl` or `webgpu` says what draws.
 import { loadModel, type Quality } from 'ctsn';
+import { deviceOf } from 'ctsn/three';
 import { FileLoader } from 'three';
 import cast from 'virtual:cast';
 import { element } from '../dom.js';
@@ -7,6 +9,7 @@ import { run } from '../failure.js';
 import { Meter } from '../meter.js';
 import { Character } from '../figure/character.js';
 import { Crowd, type Pair } from './crowd.js';
+import { createRenderer } from './renderer.js';
 import type { CrowdHook } from './hook.js';
 
 const nobody = { full: 0, coarse: 0, skinned: 0 };
@@ -15,22 +18,26 @@ const hook: CrowdHook = (window.ctsnCrowd = {
   error: undefined,
   frames: 0,
   milliseconds: 0,
+  zeroCopy: 0,
   tally: nobody,
 });
 
 async function start(): Promise<void> {
   const wanted = new URL(location.href).searchParams;
   const figures = cast.filter(({ id }) => [null, id].includes(wanted.get('figure')));
+  const renderer = await createRenderer(element<HTMLCanvasElement>('stage'), wanted.get('renderer'));
+  const device = deviceOf(renderer);
+  const backend = device ? 'webgpu' : 'cpu';
   const pairs = await Promise.all(
     figures.map(async ({ name, file, garments: [garment] }): Promise<Pair> => {
       const glb = new FileLoader().setResponseType('arraybuffer').loadAsync(file) as Promise<ArrayBuffer>;
-      const [bytes, model] = await Promise.all([glb, loadModel(garment!.file)]);
+      const [bytes, model] = await Promise.all([glb, loadModel(garment!.file, { backend, device })]);
       return { character: await Character.parse(bytes, name), garment: garment!, model };
     }),
   );
   const count = Number(wanted.get('count') ?? 50);
   element('count').textContent = count === 50 ? 'Fifty' : String(count);
-  const crowd = new Crowd(element<HTMLCanvasElement>('stage'), pairs, count);
+  const crowd = new Crowd(renderer, pairs, count);
   const meter = new Meter();
   element('loading').hidden = true;
   element('panel').hidden = false;
@@ -57,7 +64,7 @@ async function start(): Promise<void> {
     crowd.frame(seconds);
     meter.add(crowd.scheduler.spent);
     const { tally } = crowd.scheduler;
-    Object.assign(hook, { frames: meter.count, milliseconds: meter.median, tally });
+    Object.assign(hook, { frames: meter.count, milliseconds: meter.median, tally, zeroCopy: crowd.zeroCopy });
     element('milliseconds').textContent = `${meter.median.toFixed(1)} ms`;
     element('qualities').textContent = `${tally.full}, ${tally.coarse}, ${tally.skinned}`;
   });

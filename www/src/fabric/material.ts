@@ -61,7 +61,7 @@ export class FabricMaterial extends MeshPhysicalMaterial {
   measure(geometry: BufferGeometry): void {
     this.#metres = metresPerUnit(geometry);
     const { tile } = fabrics[this.look.fabric];
-    for (const texture of [this.normalMap!, this.aoMap!]) texture.repeat.setScalar(this.#metres / tile);
+    for (const texture of [this.normalMap, this.aoMap]) texture?.repeat.setScalar(this.#metres / tile);
     if (this.map!.channel === 0) this.map!.repeat.setScalar(this.#metres / TILE);
   }
 

@@ -68,16 +68,21 @@ export class Print {
   /** Yarn is not dyed evenly. */
   #mottle(share: number): void {
     const image = this.#context.getImageData(0, 0, SIZE, SIZE);
-    for (let at = 0; at < SIZE * SIZE; at++) {
-      const [x, y] = [at % SIZE, Math.floor(at / SIZE)];
-      // Streaks along the thread, and patches.
-      const streak = noise(x / 2, y / 16, SIZE / 2) - 0.5;
-      const patch = noise(x / 32, y / 32, SIZE / 32) - 0.5;
-      const factor = 1 + share * (1.2 * streak + 0.8 * patch);
-      for (let channel = 0; channel < 3; channel++) image.data[4 * at + channel]! *= factor;
+    const { data } = image;
+    unevenness ??= Float32Array.from({ length: SIZE * SIZE }, (_, at) => unevenAt(at % SIZE, Math.floor(at / SIZE)));
+    for (let at = 0; at < data.length; at++) {
+      if (at % 4 !== 3) data[at]! *= 1 + share * unevenness[at >> 2]!;
     }
     this.#context.putImageData(image, 0, 0);
   }
+}
+
+/** How dark or light the yarn is at each pixel of a tile, about 0; made once. */
+let unevenness: Float32Array | undefined;
+
+/** Streaks along the thread, and patches. */
+function unevenAt(x: number, y: number): number {
+  return 1.2 * (noise(x / 2, y / 16, SIZE / 2) - 0.5) + 0.8 * (noise(x / 32, y / 32, SIZE / 32) - 0.5);
 }
 
 /** A colour that is seen on another. */

@@ -72,10 +72,13 @@ function make(height: Height): Weave {
   const hollows = new Uint8Array(4 * SIZE * SIZE);
   for (let y = 0; y < SIZE; y++) {
     for (let x = 0; x < SIZE; x++) {
-      const [dx, dy] = [at(x - 1, y) - at(x + 1, y), at(x, y - 1) - at(x, y + 1)].map((slope) => 3 * slope);
-      const length = Math.hypot(dx!, dy!, 1);
+      const dx = 3 * (at(x - 1, y) - at(x + 1, y));
+      const dy = 3 * (at(x, y - 1) - at(x, y + 1));
+      const length = Math.sqrt(dx * dx + dy * dy + 1);
       const to = 4 * (y * SIZE + x);
-      normals.set([dx! / length, dy! / length, 1 / length].map((value) => 127.5 + 127.5 * value), to);
+      normals[to] = 127.5 + (127.5 * dx) / length;
+      normals[to + 1] = 127.5 + (127.5 * dy) / length;
+      normals[to + 2] = 127.5 + 127.5 / length;
       hollows.fill(120 + 135 * at(x, y), to, to + 3);
       normals[to + 3] = hollows[to + 3] = 255;
     }
@@ -98,10 +101,14 @@ function texture(pixels: Uint8Array): DataTexture {
 
 /** Smooth noise, 0 to 1, that repeats after `period`. */
 export function noise(x: number, y: number, period: number): number {
-  const [i, j] = [Math.floor(x), Math.floor(y)];
-  const [u, v] = [smooth(x - i), smooth(y - j)];
-  const at = (di: number, dj: number) => random((i + di) % period, (j + dj) % period);
-  return (at(0, 0) * (1 - u) + at(1, 0) * u) * (1 - v) + (at(0, 1) * (1 - u) + at(1, 1) * u) * v;
+  const i = Math.floor(x);
+  const j = Math.floor(y);
+  const u = smooth(x - i);
+  const v = smooth(y - j);
+  const [left, right, top, bottom] = [i % period, (i + 1) % period, j % period, (j + 1) % period];
+  const above = random(left, top) * (1 - u) + random(right, top) * u;
+  const below = random(left, bottom) * (1 - u) + random(right, bottom) * u;
+  return above * (1 - v) + below * v;
 }
 
 const smooth = (t: number) => t * t * (3 - 2 * t);

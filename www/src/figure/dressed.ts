@@ -22,8 +22,10 @@ export class Dressed {
   readonly wardrobe: Wardrobe;
   /** Fabric, colour and print of every garment, worn or not. */
   readonly looks = new Map<GarmentEntry, Look>();
-  /** Called when a model begins to compute elsewhere. */
-  onBackend: () => void = () => {};
+  /** Called when a model begins to compute elsewhere, or has got its folds. */
+  onModel: () => void = () => {};
+  /** Called with what befell the rest of a model. */
+  onFailure: (error: unknown) => void = () => {};
   /** Where models compute. */
   backend: BackendChoice = 'cpu';
   picture: Picture | undefined;
@@ -40,8 +42,12 @@ export class Dressed {
       material: (id) => this.#material(id),
       covered: coveredSkin,
       load: async (source, options) => {
-        const model: ClothModel = await loadModel(source, { ...options, backend: this.backend });
-        model.addEventListener('backend', () => this.onBackend());
+        // What was dropped on the page is kept by nobody.
+        const cache = String(source).startsWith('blob:') ? undefined : 'ctsn';
+        const model: ClothModel = await loadModel(source, { ...options, progressive: true, cache });
+        for (const event of ['backend', 'complete']) model.addEventListener(event, () => this.onModel());
+        // What broke off leaves the drape; who took the garment off meanwhile need not know.
+        model.complete.then(() => this.#move(model)).catch((error: unknown) => model.disposed || this.onFailure(error));
         return model;
       },
     });
@@ -90,6 +96,13 @@ export class Dressed {
   async compute(backend: BackendChoice): Promise<void> {
     this.backend = backend;
     await Promise.all(this.models.map((model) => model.setBackend(backend)));
+  }
+
+  /** Has a model compute where it is to, once it is shown: a GPU may take its time to begin. */
+  async #move(model: ClothModel): Promise<void> {
+    if (this.backend === 'cpu' || model.disposed) return;
+    await model.setBackend(this.backend);
+    this.onModel();
   }
 
   /** Has one garment more. */

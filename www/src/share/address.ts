@@ -22,9 +22,9 @@ export function readAddress({ searchParams }: URL): Scene {
   if (wear !== null && wear !== undefined) scene.wear = wear.split(',').filter(Boolean).map(readGarment);
   if (pose) scene.pose = readPlace(pose);
   if (view) {
-    const [around, up, far] = view.split(',').map(Number);
-    if (![around, up, far].every(Number.isFinite)) throw new Error(`?view=${view}: AROUND,UP,FAR wanted, for example ?view=30,5,2.5`);
-    scene.view = { around: around!, up: up!, far: far! };
+    const [around, up, far, lift = 0] = view.split(',').map(Number);
+    if (![around, up, far, lift].every(Number.isFinite)) throw new Error(`?view=${view}: AROUND,UP,FAR wanted, for example ?view=30,5,2.5`);
+    scene.view = { around: around!, up: up!, far: far!, lift };
   }
   return scene;
 }
@@ -35,7 +35,7 @@ export function writeAddress({ figure, wear, pose, view }: Scene): string {
   if (figure) query.set('figure', figure);
   if (wear) query.set('wear', wear.map(({ garment, look }) => (look ? [garment, look.fabric, look.colour.slice(1), look.print].join('.') : garment)).join(','));
   if (pose) query.set('pose', 'own' in pose ? `~${pose.own}` : `${pose.clip}:${Math.round(pose.frame)}`);
-  if (view) query.set('view', [view.around, view.up, view.far].join(','));
+  if (view) query.set('view', [view.around, view.up, view.far, ...(view.lift === 0 ? [] : [view.lift])].join(','));
   return query.toString().replaceAll('%2C', ',').replaceAll('%3A', ':').replaceAll('%7E', '~');
 }
 

@@ -20,14 +20,30 @@ export interface Margins {
   bottom: number;
 }
 
-/** A view: angles in degrees, and distance in heights of the figure. */
+/**
+ * A view: angles in degrees; distance, and how far above the figure's middle it looks, in heights of the figure.
+ */
 export interface View {
   around: number;
   up: number;
   far: number;
+  lift: number;
 }
 
 const FIELD = 28;
+/** Degrees around and up, a factor of the distance, and heights up. */
+const KEYS: Readonly<Record<string, readonly [number, number, number, number]>> = {
+  ArrowLeft: [-10, 0, 1, 0],
+  ArrowRight: [10, 0, 1, 0],
+  ArrowUp: [0, 6, 1, 0],
+  ArrowDown: [0, -6, 1, 0],
+  '+': [0, 0, 0.85, 0],
+  '-': [0, 0, 1.18, 0],
+  PageUp: [0, 0, 1, 0.1],
+  PageDown: [0, 0, 1, -0.1],
+};
+/** As far above and below its middle as a figure is looked at, in its heights. */
+const LIFT = 0.5;
 
 /** Renderer, camera, light and floor of the page. */
 export class Stage {
@@ -53,14 +69,15 @@ export class Stage {
     this.renderer.shadowMap.enabled = true;
     this.renderer.shadowMap.type = PCFShadowMap;
     this.controls = new OrbitControls(this.camera, canvas);
-    Object.assign(this.controls, { enableDamping: true, enablePan: false, maxPolarAngle: 1.62, zoomSpeed: 0.7 });
+    Object.assign(this.controls, { enableDamping: true, maxPolarAngle: 1.62, zoomSpeed: 0.7 });
     // The controls move the camera in their own event handlers too, not only in update().
     this.controls.addEventListener('change', () => (this.#changed = true));
     this.scene.environment = createStudio();
     this.scene.environmentIntensity = 0.85;
     this.scene.add(this.#sun, this.#sun.target, this.floor);
     new ResizeObserver(() => this.#resize()).observe(canvas);
-    this.look({ around: 14, up: 6, far: 2.5 });
+    canvas.addEventListener('keydown', (event) => this.#press(event));
+    this.look({ around: 14, up: 6, far: 2.5, lift: 0 });
   }
 
   /** Makes room for a figure: its size as it stands now, and the parts of it that touch the floor. */
@@ -85,9 +102,8 @@ export class Stage {
     const { x, z } = head.getWorldPosition(new Vector3()).lerp(to, 0.5);
     to.set(x, to.y, z);
     to.y = this.#middle + 0.4 * (to.y - this.#middle);
-    this.camera.position.add(to).sub(this.#focus);
+    for (const point of [this.camera.position, this.controls.target]) point.add(to).sub(this.#focus);
     this.#focus.copy(to);
-    this.controls.target.copy(to);
     this.#sun.target.position.copy(to);
     this.#sun.position.set(to.x + 1.7, to.y + 3, to.z + 2.2);
     this.floor.update();
@@ -100,22 +116,24 @@ export class Stage {
 
   /** Where the camera stands. */
   get view(): View {
-    const way = this.camera.position.clone().sub(this.#focus);
+    const way = this.camera.position.clone().sub(this.controls.target);
     const far = way.length();
     const degrees = 180 / Math.PI;
     return {
       around: Math.round(degrees * Math.atan2(way.x, way.z)),
       up: Math.round(degrees * Math.asin(way.y / far)),
       far: Number((far / this.#height).toFixed(2)),
+      lift: Number(((this.controls.target.y - this.#focus.y) / this.#height).toFixed(2)),
     };
   }
 
   /** Moves the camera around the figure. */
-  look({ around, up, far }: View): void {
+  look({ around, up, far, lift }: View): void {
     const [a, b] = [(Math.PI / 180) * around, (Math.PI / 180) * up];
     const way = new Vector3(Math.sin(a) * Math.cos(b), Math.sin(b), Math.cos(a) * Math.cos(b));
-    this.camera.position.copy(this.#focus).addScaledVector(way, far * this.#height);
     this.controls.target.copy(this.#focus);
+    this.controls.target.y += lift * this.#height;
+    this.camera.position.copy(this.controls.target).addScaledVector(way, far * this.#height);
     this.controls.update();
     this.#changed = true;
   }
@@ -126,14 +144,15 @@ export class Stage {
     return 0.5 + (left - right) / (2 * this.#canvas.clientWidth);
   }
 
-  /** How far the camera is from the middle of the figure, metres. */
+  /** How far the camera is from what it looks at, metres. */
   get distance(): number {
-    return this.camera.position.distanceTo(this.#focus);
+    return this.camera.position.distanceTo(this.controls.target);
   }
 
   /** Moves the camera as the person at the controls wants; true if the view has changed since the last call. */
   turn(): boolean {
     this.controls.update();
+    this.#hold();
     const changed = this.#changed;
     this.#changed = false;
     return changed;
@@ -147,6 +166,25 @@ export class Stage {
   frame(margins: Margins): void {
     this.#margins = margins;
     this.#resize();
+  }
+
+  /** Keeps what is looked at on the figure's axis, and on the figure. */
+  #hold(): void {
+    const { target } = this.controls;
+    const most = LIFT * this.#height;
+    const wanted = this.#focus.clone();
+    wanted.y += Math.min(Math.max(target.y - wanted.y, -most), most);
+    this.camera.position.add(wanted).sub(target);
+    target.copy(wanted);
+  }
+
+  /** Arrows turn the camera, the keys for pages lift it, plus and minus bring it closer and away. */
+  #press(event: KeyboardEvent): void {
+    const way = KEYS[event.key];
+    if (!way) return;
+    event.preventDefault();
+    const { around, up, far, lift } = this.view;
+    this.look({ around: around + way[0], up: Math.min(Math.max(up + way[1], -2), 85), far: Math.min(Math.max(far * way[2], 0.25), 6), lift: lift + way[3] });
   }
 
   #resize(): void {
