@@ -48,8 +48,11 @@ impl<'a> Faces<'a> {
             near if near.is_finite() => near,
             _ => f64::INFINITY,
         };
-        let (_, least) =
-            self.tree.find_best(f64::MAX, |node, _| squared_distance(node, point), |face, _| counts(face as usize).then(|| squared(face)))?;
+        let (_, least) = self.tree.find_best(
+            f64::MAX,
+            |node, _| squared_distance(node, point),
+            |face, _| counts(face as usize).then(|| squared(face)),
+        )?;
         // Faces that meet in the closest point are all as near: the tree finds any of them.
         let reach = 1.000_001 * least.sqrt() + f64::MIN_POSITIVE;
         let nearer = |a: &u32, b: &u32| squared(*a).total_cmp(&squared(*b)).then(a.cmp(b));

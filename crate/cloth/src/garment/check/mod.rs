@@ -73,12 +73,7 @@ pub fn fit(character: &Character, garment: Garment, source: Source, wanted: Resa
 }
 
 /// The same beside a body whose outer skin is known.
-pub(super) fn fit_beside(
-    outside: &Outside,
-    garment: Garment,
-    source: Source,
-    wanted: Resample,
-) -> Result<Fitted> {
+pub(super) fn fit_beside(outside: &Outside, garment: Garment, source: Source, wanted: Resample) -> Result<Fitted> {
     let (garment, source, mut mended) = mend::mend(garment, source);
     let (mut garment, source) = resample(outside, garment, source, wanted, &mut mended);
     let mut findings = Findings::default();

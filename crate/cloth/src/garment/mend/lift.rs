@@ -3,8 +3,8 @@
 
 use crate::garment::check::{Findings, INWARDS, Outside, Place, inside, inwards, list, mistaken};
 use crate::simulate::{Elements, untangle};
-use ctsn_rig::{Drawn, Garment};
 use ctsn_rig::gltf::Source;
+use ctsn_rig::{Drawn, Garment};
 use glam::DVec3;
 
 /// Cloth deeper than the first is lifted until it is as far outside as the second, in body extents: 1 and 2 mm of a

@@ -15,8 +15,8 @@ const BEYOND: f64 = 3.0;
 /// Rounds of Newton's method: the fifth digit is there after three.
 const ROUNDS: usize = 8;
 
-/// The riders of `drawn`, whose faces are of these `layers`, on the `cloth`. A vertex that halves an edge is as far from
-/// the cloth as the ends of the edge are: the cloth is round where the artist's faces were flat.
+/// The riders of `drawn`, whose faces are of these `layers`, on the `cloth`. A vertex that halves an edge is as far
+/// from the cloth as the ends of the edge are: the cloth is round where the artist's faces were flat.
 pub(super) fn bind(drawn: &Split, layers: &[Layer], cloth: &Mesh) -> Vec<Rider> {
     let layers: Vec<Layer> = drawn.faces.iter().map(|face| layers[*face]).collect();
     let mut riders = nearest(&drawn.mesh, &layers, cloth);

@@ -42,7 +42,8 @@ pub(super) fn layers(mesh: &Mesh, outside: &Outside) -> Vec<Layer> {
     let places = outside.places(&near.centres);
     let inner = (0..layers.len()).map(|face| backs[face] && near.normals[face].dot(places[face].normal) < 0.0);
     let inner = settle(mesh, inner.collect());
-    let area = |which: &dyn Fn(usize) -> bool| (0..layers.len()).filter(|f| which(*f)).map(|f| near.areas[f]).sum::<f64>();
+    let area =
+        |which: &dyn Fn(usize) -> bool| (0..layers.len()).filter(|f| which(*f)).map(|f| near.areas[f]).sum::<f64>();
     if area(&|face| inner[face]) > LAYERED * area(&|_| true) {
         let mut touched = vec![false; mesh.positions.len()];
         let lining = mesh.triangles.iter().zip(&inner).filter(|(_, inner)| **inner);

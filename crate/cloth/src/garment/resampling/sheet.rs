@@ -54,7 +54,8 @@ impl<'a> Sheet<'a> {
             mesh.positions.iter().zip(&normals).map(|(place, normal)| self.under(*place, *normal)).collect();
         let pinned = |(corners, weights): &([u32; 3], [f64; 3])| {
             let held = |corner: &u32| self.garment.pins.binary_search(corner).is_ok();
-            corners.iter().zip(weights).filter(|(corner, _)| held(corner)).map(|(_, weight)| weight).sum::<f64>() >= PINNED
+            corners.iter().zip(weights).filter(|(corner, _)| held(corner)).map(|(_, weight)| weight).sum::<f64>()
+                >= PINNED
         };
         let pins = (0..).zip(&under).filter(|(_, under)| pinned(under)).map(|(vertex, _)| vertex).collect();
         let nearest = |(corners, weights): &([u32; 3], [f64; 3])| {

@@ -36,9 +36,11 @@ impl Split {
             sides.into_iter().reduce(|one, two| if before(one, two) { two } else { one })
         };
         let long = |(edge, _): &([u32; 2], &[_])| length(*edge) > longest;
-        let chosen = edges.iter().filter(long).filter(|(edge, sides)| sides.iter().all(|s| most(s.triangle) == Some(*edge)));
-        let chosen: Vec<([u32; 2], Vec<(usize, usize)>)> =
-            chosen.map(|(edge, sides)| (edge, sides.iter().map(|side| (side.triangle, side.corner)).collect())).collect();
+        let chosen =
+            edges.iter().filter(long).filter(|(edge, sides)| sides.iter().all(|s| most(s.triangle) == Some(*edge)));
+        let chosen: Vec<([u32; 2], Vec<(usize, usize)>)> = chosen
+            .map(|(edge, sides)| (edge, sides.iter().map(|side| (side.triangle, side.corner)).collect()))
+            .collect();
         for (edge, sides) in &chosen {
             let [a, b] = edge.map(|v| self.mesh.positions[v as usize]);
             self.mesh.positions.push(0.5 * (a + b));

@@ -40,8 +40,8 @@ fn waist() -> (DVec3, f64) {
     (centre, radius + 0.02)
 }
 
-/// A skirt of `around` by `along` quads a layer, its lining 3 mm inside it, joined at waist and hem, with two pockets of
-/// `pocket` by `pocket` quads 2 mm outside it.
+/// A skirt of `around` by `along` quads a layer, its lining 3 mm inside it, joined at waist and hem, with two pockets
+/// of `pocket` by `pocket` quads 2 mm outside it.
 fn skirt(around: u32, along: u32, pocket: u32) -> Garment {
     let (centre, radius) = waist();
     let tube = move |radius: f64, turn: f64, down: f64| {
@@ -178,7 +178,8 @@ fn what_is_asked_for_is_read_and_said() {
 #[test]
 fn a_layered_garment_is_fit_to_be_simulated() {
     let garment = skirt(150, 70, 12);
-    let Fitted { garment, mended, .. } = fit_beside(&OUTSIDE, garment.clone(), source(&garment), Resample::Auto).unwrap();
+    let Fitted { garment, mended, .. } =
+        fit_beside(&OUTSIDE, garment.clone(), source(&garment), Resample::Auto).unwrap();
     assert!(mended.iter().any(|said| said.contains("even mesh of its own")), "{mended:?}");
     let drawn = garment.drawn.unwrap();
     let count = garment.mesh.positions.len() as u32;

@@ -73,7 +73,8 @@ impl crate::suite::Suite for Ride<Vec<f32>, Vec<f32>, Vec<u32>> {
             let [a, b, c] = corners.map(|corner| corner as usize);
             let between = |values: &[glam::DVec3]| values[a] * u + values[b] * v + values[c] * w;
             let normal = between(&normals);
-            let along = if normal.length() > f64::from(LEAST) { normal.normalize() * offset } else { glam::DVec3::ZERO };
+            let along =
+                if normal.length() > f64::from(LEAST) { normal.normalize() * offset } else { glam::DVec3::ZERO };
             (between(&positions) + along).to_array()
         };
         let riders = self.corners.as_chunks::<3>().0.iter().zip(self.coordinates.as_chunks::<4>().0);
