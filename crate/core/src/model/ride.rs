@@ -55,11 +55,9 @@ impl Ride<Vec<f32>, Vec<u32>> {
         for (i, [a, b, c, _]) in coordinates.as_chunks::<4>().0.iter().enumerate() {
             let sound = [a, b, c].iter().all(|share| share.abs() <= FARTHEST) && (a + b + c - 1.0).abs() <= ROUNDING;
             if !sound {
-                let found = [a, b, c].map(|share| Decimal(*share));
-                return Err(Error::NotModel(format!(
-                    "draw.coordinates: wanted three of at most {FARTHEST} that add up to 1, found {}, {} and {} at vertex {i}",
-                    found[0], found[1], found[2]
-                )));
+                let [a, b, c] = [a, b, c].map(|share| Decimal(*share));
+                let wanted = "draw.coordinates: wanted three of at most 16 that add up to 1";
+                return Err(Error::NotModel(format!("{wanted}, found {a}, {b} and {c} at vertex {i}")));
             }
         }
         Ok(Some(Self::new(corners, coordinates, surface)))
