@@ -3,6 +3,7 @@
 
 mod body;
 mod cut;
+pub mod pack;
 mod read;
 mod ride;
 mod write;
@@ -13,7 +14,7 @@ pub use body::{Body, Fans, areas};
 pub use cut::{Cut, MOST_STEPS, STEPS};
 pub use ride::Ride;
 use std::sync::Arc;
-pub use write::Storage;
+pub use write::{Storage, file_bytes};
 
 /// Name of the skin weights `W_C`, in the file and among [`Model::parameters`].
 pub const CLOTH_WEIGHTS: &str = "cloth.weights";

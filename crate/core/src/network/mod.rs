@@ -65,8 +65,8 @@ pub struct Activations<B> {
     pub template: B,
     /// Predicted positions [n, 3].
     pub positions: B,
-    /// Every second state of the polish [n, 3], where the model has one.
-    pub polished: Option<B>,
+    /// What the polish computes on its way, where the model has one.
+    pub polish: Option<Polishing<B>>,
     /// What the repair of penetration computes, where the model has a body.
     pub collision: Option<Collision<B>>,
     /// Unit normals of the predicted positions [n, 3].
@@ -83,6 +83,14 @@ pub struct Drawn<B> {
     pub positions: B,
     /// Unit normals [w or d, 3].
     pub normals: B,
+}
+
+/// What the polish computes on its way.
+pub struct Polishing<B> {
+    /// Pulls of the edges [n, 3].
+    pub pulls: B,
+    /// How far the last step went [n, 3].
+    pub moves: B,
 }
 
 /// What a graph layer computes on its way.
@@ -128,7 +136,10 @@ impl<B> Activations<B> {
             coarse: buffer("skeleton", n * 3),
             template: buffer("template", n * 3),
             positions: buffer("positions", n * 3),
-            polished: model.cut.as_ref().map(|_| buffer("polish", n * 3)),
+            polish: model
+                .cut
+                .as_ref()
+                .map(|_| Polishing { pulls: buffer("polish", n * 3), moves: buffer("polish", n * 3) }),
             collision: model.body.as_ref().map(|body| Collision::new(body.vertices, n, &mut buffer)),
             normals: buffer("normals", n * 3),
             riders: model.ride.as_ref().map(|ride| Drawn {

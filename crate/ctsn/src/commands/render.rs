@@ -1,13 +1,13 @@
 //! `ctsn render`: a picture of a dressed character, for people to judge.
 
-use super::model;
+use super::{model, ordered};
 use crate::pictures;
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result};
 use ctsn_core::cpu::Level;
 use ctsn_core::{Predictor, Streams};
 use ctsn_rig::gltf;
 use ctsn_rig::path::body_frame;
-use ctsn_rig::{Character, Pose, joints, vertices};
+use ctsn_rig::{joints, vertices};
 use ctsn_train::dataset::{Sample, Setup, pose_path};
 use std::path::PathBuf;
 
@@ -77,16 +77,4 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     pictures::render_dressed(&character, pose, Some((&cloth, triangles)), &arguments.output)?;
     println!("{}", arguments.output.display());
     Ok(())
-}
-
-/// The pose in the order of the model's joints.
-fn ordered(names: &[String], character: &Character, pose: &Pose) -> Result<Pose> {
-    let mut ordered = Vec::new();
-    for name in names {
-        match character.joint(name) {
-            Some(joint) => ordered.push(pose[joint]),
-            None => bail!("the model wants joint {name}, the character has no joint of that name"),
-        }
-    }
-    Ok(ordered)
 }

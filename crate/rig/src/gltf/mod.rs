@@ -5,6 +5,7 @@ mod animation;
 mod colour;
 mod file;
 mod nodes;
+mod pack;
 mod part;
 mod skeleton;
 mod unpack;
@@ -12,6 +13,7 @@ mod vrm;
 mod weld;
 mod write;
 
+pub use pack::pack;
 pub use weld::Source;
 pub use write::{Appearance, write_character, write_garment};
 
