@@ -26,6 +26,15 @@ test.each(['tiny', 'small', 'small_f16', 'isolated'])('golden model %s, through 
   expect(result.length).toBeLessThan(1e-5);
 });
 
+test('a drawn mesh of 21,000 vertices rides on the cloth, the same on both devices', async () => {
+  const count = 21_000;
+  const result = await shop.run('ride', small.argument, count);
+  expect(result).toMatchObject({ same: true, vertexCount: count, shown: count + count / 10, faces: count - 2 });
+  expect(result.backend).toEqual(['cpu', 'webgpu']);
+  expect(result.definition).toBeLessThanOrEqual(1e-6);
+  for (const error of [result.devices, result.buffers]) expect(error).toBeLessThanOrEqual(1e-4);
+});
+
 test('buffers without read-back, one prediction on the CPU, streams, refusals', async () => {
   const result = await shop.run('answers', small.argument);
   for (const error of [result.kept, result.other, result.none]) expect(error).toBeLessThanOrEqual(small.tolerance);

@@ -2,6 +2,8 @@
 #![cfg(feature = "machine")]
 
 use ctsn_core::cpu::Level;
+use ctsn_core::file::Tensors;
+use ctsn_core::model::pack::{packable, quantise};
 use ctsn_core::model::{HostModel, Storage};
 use ctsn_core::{Predictor, Streams};
 use ctsn_gpu::Gpu;
@@ -96,6 +98,13 @@ fn the_file_keeps_what_rides() {
     let model = layered::model(&mut Rng::with_seed(14));
     let read = HostModel::parse(&model.to_bytes(Storage::F32)).expect("a model");
     assert_eq!((&read.ride, &read.surface), (&model.ride, &model.surface));
+    // A packed file keeps places and offsets as they are: they would not add up.
+    let bytes = model.to_bytes(Storage::F32);
+    let mut file = Tensors::parse(&bytes).expect("a file");
+    let names = packable(&file);
+    assert!(names.iter().any(|name| name == "cloth.rest"));
+    names.iter().for_each(|name| quantise(&mut file, name, 127, None).expect("real numbers"));
+    assert_eq!(HostModel::read(&file).expect("a model").ride, model.ride);
     let without = HostModel { ride: None, surface: None, ..model };
     let read = HostModel::parse(&without.to_bytes(Storage::F32)).expect("a model");
     assert_eq!((read.ride, read.surface), (None, None));

@@ -13,9 +13,9 @@ type Quadruple = [GPUBuffer, GPUBuffer, GPUBuffer, GPUBuffer];
 export class ClothBuffers {
   /** Tells this answer of `predictCloth` from arrays. */
   readonly output = 'gpu';
-  /** World positions of the cloth vertices [3·n]. */
+  /** World positions of the cloth vertices, or of what rides on them [3·n]. */
   readonly positions: GPUBuffer;
-  /** World unit normals of the cloth vertices [3·n]. */
+  /** Their world unit normals [3·n]. */
   readonly normals: GPUBuffer;
   /** Positions of the drawn vertices [3·d]; `positions` where the model has no drawn surface. */
   readonly drawnPositions: GPUBuffer;

@@ -22,9 +22,9 @@ export interface PredictOptions {
 export interface Frame {
   /** Tells this answer of `predictCloth` from buffers. */
   readonly output: 'arrays';
-  /** World positions of the cloth vertices, metres [3·n]. */
+  /** World positions of the cloth vertices, or of the mesh that rides on the cloth where the file has one, metres [3·n]. */
   readonly positions: Float32Array;
-  /** World unit normals of the cloth vertices [3·n]. */
+  /** Their world unit normals [3·n]. */
   readonly normals: Float32Array;
   /**
    * How much of the network's folds the cloth shows: 1 in poses like those of the training, less in others, 0 where
@@ -35,7 +35,7 @@ export interface Frame {
 
 /** The mesh to draw: the cloth's, its vertices split at seams, so that a texture may end where the cloth does not. */
 export interface Surface {
-  /** Drawn vertex -> cloth vertex [d]. */
+  /** Drawn vertex -> vertex of the mesh that is predicted [d]. */
   readonly vertex: Uint32Array;
   /** Texture coordinates [2·d]. */
   readonly uv: Float32Array;

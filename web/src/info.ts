@@ -22,9 +22,9 @@ export interface Training {
 
 /** What a model is made of, what it costs, and where it comes from. */
 export interface ModelInfo {
-  /** Cloth vertices, n. */
+  /** Cloth vertices that the network predicts, n. */
   readonly vertices: number;
-  /** Vertices that are drawn, d: the cloth's, split at seams. */
+  /** Vertices that are drawn, d: the cloth's, or those of a mesh that rides on it, split at seams. */
   readonly drawnVertices: number;
   /** Joints, J. */
   readonly joints: number;

@@ -21,9 +21,9 @@ export class ClothModel extends EventTarget {
   readonly rootIndex: number;
   /** Inverse bind matrices in metres, row-major 3×4, one joint after the other [12·J]. */
   readonly inverseBind: Float32Array;
-  /** Cloth vertices, n. */
+  /** Vertices of the mesh that is predicted, n: of the cloth, or of the mesh that rides on it where the file has one. */
   readonly vertexCount: number;
-  /** Triangles of the cloth mesh, one vertex per position [3·t]. */
+  /** Triangles of that mesh, one vertex per position [3·t]. */
   readonly triangles: Uint32Array;
   /** The mesh to draw, where the file has one beside the cloth mesh. */
   readonly surface: Surface | undefined;

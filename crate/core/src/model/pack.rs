@@ -3,6 +3,7 @@
 
 use super::SKELETON_BASIS;
 use super::read::finite;
+use super::ride::COORDINATES;
 use crate::Result;
 use crate::file::{Dtype, Tensor, Tensors, scaled};
 use crate::topology::Graph;
@@ -16,7 +17,8 @@ const FEW: usize = 512;
 pub fn packable(file: &Tensors) -> Vec<String> {
     let real = |tensor: &Tensor| matches!(tensor.dtype, Dtype::F32 | Dtype::F16) || tensor.dtype == Dtype::I8;
     let large = |tensor: &Tensor| tensor.shape.len() > 1 && tensor.shape.iter().product::<usize>() >= FEW;
-    let wanted = |name: &str, tensor: &Tensor| real(tensor) && large(tensor) && !name.ends_with(".fine");
+    let whole = |name: &str| name.ends_with(".fine") || name == COORDINATES;
+    let wanted = |name: &str, tensor: &Tensor| real(tensor) && large(tensor) && !whole(name);
     file.tensors.iter().filter(|(name, tensor)| wanted(name, tensor)).map(|(name, _)| name.clone()).collect()
 }
 

@@ -9,6 +9,8 @@ use crate::error::{Decimal, Error, Result};
 use crate::file::Tensors;
 use crate::operation::{self, Normals};
 
+/// Shares and offsets side by side: they have no scale in common.
+pub(super) const COORDINATES: &str = "draw.coordinates";
 /// Barycentric coordinates add up to one but for so much, which f32 loses.
 const ROUNDING: f32 = 1e-4;
 /// A vertex beyond the cloth's rim has negative coordinates; none is as far away as this.
@@ -34,12 +36,12 @@ impl Ride<Vec<f32>, Vec<u32>> {
 
     /// How many vertices ride, by a file that has them.
     pub(super) fn count(file: &Tensors) -> Result<Option<usize>> {
-        if !["draw.corners", "draw.coordinates"].iter().any(|name| file.tensors.contains_key(*name)) {
+        if !["draw.corners", COORDINATES].iter().any(|name| file.tensors.contains_key(*name)) {
             return Ok(None);
         }
-        match file.f32("draw.coordinates", &[None, Some(4)])?.1[0] {
+        match file.f32(COORDINATES, &[None, Some(4)])?.1[0] {
             0 => {
-                let (tensor, wanted) = ("draw.coordinates".to_owned(), "at least one row".to_owned());
+                let (tensor, wanted) = (COORDINATES.to_owned(), "at least one row".to_owned());
                 Err(Error::Shape { tensor, wanted, found: "none".to_owned() })
             }
             count => Ok(Some(count)),
@@ -51,15 +53,13 @@ impl Ride<Vec<f32>, Vec<u32>> {
         let Some(count) = Self::count(file)? else { return Ok(None) };
         let surface = surface.ok_or_else(|| Error::MissingTensor("draw.vertex".to_owned()))?;
         let corners = file.u32("draw.corners", &[Some(count), Some(3)], n)?;
-        let coordinates = file.f32("draw.coordinates", &[Some(count), Some(4)])?.0;
+        let coordinates = file.f32(COORDINATES, &[Some(count), Some(4)])?.0;
         for (i, [a, b, c, _]) in coordinates.as_chunks::<4>().0.iter().enumerate() {
             let sound = [a, b, c].iter().all(|share| share.abs() <= FARTHEST) && (a + b + c - 1.0).abs() <= ROUNDING;
             if !sound {
-                let found = [a, b, c].map(|share| Decimal(*share));
-                return Err(Error::NotModel(format!(
-                    "draw.coordinates: wanted three of at most {FARTHEST} that add up to 1, found {}, {} and {} at vertex {i}",
-                    found[0], found[1], found[2]
-                )));
+                let [a, b, c] = [a, b, c].map(|share| Decimal(*share));
+                let wanted = "draw.coordinates: wanted three of at most 16 that add up to 1";
+                return Err(Error::NotModel(format!("{wanted}, found {a}, {b} and {c} at vertex {i}")));
             }
         }
         Ok(Some(Self::new(corners, coordinates, surface)))
@@ -69,7 +69,7 @@ impl Ride<Vec<f32>, Vec<u32>> {
     pub(super) fn write(&self, writer: &mut Writer) {
         let count = self.corners.len() / 3;
         writer.indices("draw.corners", &[count, 3], &self.corners);
-        writer.fixed("draw.coordinates", &[count, 4], &self.coordinates);
+        writer.fixed(COORDINATES, &[count, 4], &self.coordinates);
     }
 
     /// The drawn mesh on cloth `positions` [n, 3] of these `triangles` [t, 3] -> [w, 3].

@@ -29,6 +29,9 @@ pub fn run(Arguments { model: path, output }: &Arguments) -> Result<()> {
     let (joints, n) = (model.sizes.joints, model.sizes.vertices);
     let bytes = onnx(&model);
     file::write(output, &bytes)?;
+    if model.ride.is_some() {
+        println!("the drawn mesh that rides on the cloth stays in the model file: docs/export.md");
+    }
     println!("{}: joints [{joints}, 3, 4] -> positions [{n}, 3], {:.1} MB", output.display(), bytes.len() as f64 / 1e6);
     Ok(())
 }

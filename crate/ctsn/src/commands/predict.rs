@@ -16,9 +16,9 @@ use std::time::Instant;
 /// Predict cloth for a file of poses
 ///
 /// POSES holds the tensor `pose.joints` [P, J, 3, 4]: row-major world transforms of the model's joints, in metres.
-/// OUT receives `positions` and `normals` [P, n, 3], in world space: of the cloth, or of the mesh that rides on it where
-/// the model has one. The times that are told are those of whole
-/// predictions; the first one's has the reading of the model in it.
+/// OUT receives `positions` and `normals` [P, n, 3], in world space: of the cloth, or of the mesh that rides on it
+/// where the model has one. The times that are told are those of whole predictions; the first one's has the reading of
+/// the model in it.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// Model file (safetensors)

@@ -4,7 +4,6 @@ use super::{model, ordered};
 use crate::pictures;
 use anyhow::{Context, Result};
 use ctsn_core::cpu::Level;
-use ctsn_core::model::HostModel;
 use ctsn_core::{Predictor, Streams};
 use ctsn_rig::gltf;
 use ctsn_rig::path::body_frame;
@@ -55,7 +54,8 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         )
     })?;
     let cloth = match arguments.truth.as_ref().zip(dataset) {
-        Some((folder, Setup { description, .. })) => {
+        Some((folder, setup)) => {
+            let description = &setup.description;
             let index = description.clips.iter().position(|name| *name == clip.name);
             let index = index.with_context(|| {
                 format!("{}: no clip {}; it has: {}", folder.display(), clip.name, description.clips.join(", "))
@@ -63,8 +63,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
             let path = pose_path(folder, index, arguments.frame);
             let sample = Sample::read(&path, model.sizes.joints, model.sizes.vertices)?;
             let back = body_frame(&character, pose).inverse();
-            let truth = shown(&model, &sample.truth);
-            vertices(&truth).into_iter().map(|vertex| back.transform_point3(vertex)).collect()
+            vertices(&setup.shown(&sample.truth)).into_iter().map(|vertex| back.transform_point3(vertex)).collect()
         }
         None => {
             let streams = if arguments.skinning { Streams::None } else { Streams::Both };
@@ -78,9 +77,4 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     pictures::render_dressed(&character, pose, Some((&cloth, triangles)), &arguments.output)?;
     println!("{}", arguments.output.display());
     Ok(())
-}
-
-/// What is drawn of cloth at `positions` [n, 3]: the cloth, or what rides on it.
-fn shown(model: &HostModel, positions: &[f32]) -> Vec<f32> {
-    model.ride.as_ref().map_or(positions.to_vec(), |ride| ride.lay(positions, &model.triangles))
 }

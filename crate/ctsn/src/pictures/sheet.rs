@@ -35,8 +35,9 @@ pub fn sheet(dataset: &Dataset, character: &Character, mixed: bool) -> Result<Rg
         let what = if mixed { "mixed pose" } else { "pose" };
         return Err(Error::Dataset(format!("no {what} was kept, there is nothing to show")));
     }
-    let triangles = dataset.setup.triangles.as_chunks::<3>().0;
-    let cloths: Vec<Vec<DVec3>> = chosen.iter().map(|sample| vertices(&sample.truth)).collect();
+    let setup = &dataset.setup;
+    let triangles = setup.shown_triangles().as_chunks::<3>().0;
+    let cloths: Vec<Vec<DVec3>> = chosen.iter().map(|sample| vertices(&setup.shown(&sample.truth))).collect();
     let views = [View::THREE[0], View::THREE[2]];
     let extent = cloths.iter().flat_map(|cloth| views.map(|view| bounds(cloth, &view)));
     let extent = extent.map(|[low, high]| (high - low).truncate()).fold(DVec2::splat(1e-3), DVec2::max);

@@ -15,7 +15,7 @@ mod write;
 
 pub use pack::pack;
 pub use weld::Source;
-pub use write::{Appearance, write_character, write_garment};
+pub use write::{Appearance, write_character, write_garment, write_part};
 
 use crate::{Character, Clip, Garment, Mesh, SkinWeights, SkinnedMesh};
 use crate::{Error, Result, mesh::triangle};

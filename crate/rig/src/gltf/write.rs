@@ -65,6 +65,7 @@ pub fn write_character(path: &Path, character: &Character, appearance: &Appearan
     nodes.push(json!({ "name": "body", "mesh": 0, "skin": 0 }));
     let joints: Vec<usize> = (0..character.joints.len()).collect();
     let mut document = json!({
+        "asset": { "version": "2.0", "generator": GENERATOR },
         "scene": 0, "scenes": [{ "nodes": top }], "nodes": nodes,
         "meshes": [{ "name": "body", "primitives": primitives }],
         "skins": [{ "joints": joints, "inverseBindMatrices": binds }],
@@ -77,6 +78,15 @@ pub fn write_character(path: &Path, character: &Character, appearance: &Appearan
 
 /// Writes a garment as GLB, in metres. Its pins become the attribute `_PIN`, 1 or 0 per vertex.
 pub fn write_garment(path: &Path, garment: &Garment) -> Result<()> {
+    write_cloth(path, garment, GENERATOR)
+}
+
+/// The same of a garment that somebody else made: read again, it is no [`Source::own`](super::Source::own).
+pub fn write_part(path: &Path, garment: &Garment) -> Result<()> {
+    write_cloth(path, garment, "ctsn split")
+}
+
+fn write_cloth(path: &Path, garment: &Garment, generator: &str) -> Result<()> {
     let mut file = Writer::default();
     let mut primitives = file.primitives(&garment.mesh, &garment.surface, &Appearance::default(), None);
     if !garment.pins.is_empty() {
@@ -90,6 +100,7 @@ pub fn write_garment(path: &Path, garment: &Garment) -> Result<()> {
         }
     }
     let document = json!({
+        "asset": { "version": "2.0", "generator": generator },
         "scene": 0, "scenes": [{ "nodes": [0] }], "nodes": [{ "name": "garment", "mesh": 0 }],
         "meshes": [{ "name": "garment", "primitives": primitives }],
     });
@@ -220,7 +231,6 @@ impl Writer {
     }
 
     fn save(mut self, path: &Path, mut document: Value) -> Result<()> {
-        document["asset"] = json!({ "version": "2.0", "generator": GENERATOR });
         document["accessors"] = json!(std::mem::take(&mut self.accessors));
         document["bufferViews"] = json!(std::mem::take(&mut self.views));
         document["materials"] = json!(std::mem::take(&mut self.materials));

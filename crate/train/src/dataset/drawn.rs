@@ -1,6 +1,7 @@
 //! The mesh that is drawn where the cloth is another, as a dataset keeps it for the model. In `setup.safetensors`:
 //! `drawn.corners` [w, 3], `drawn.coordinates` [w, 4], `drawn.vertex` [d], `drawn.uv` [d, 2], `drawn.triangles` [t, 3].
 
+use super::Setup;
 use crate::Result;
 use ctsn_core::file::{Tensor, Tensors};
 use ctsn_core::model::{Ride, Surface};
@@ -61,5 +62,17 @@ impl Drawn {
             vertex,
         };
         Ok(Some(Self { ride: Ride::new(corners, coordinates, &surface), surface }))
+    }
+}
+
+impl Setup {
+    /// What is drawn of cloth at `positions` [n, 3]: the cloth, or what rides on it.
+    pub fn shown(&self, positions: &[f32]) -> Vec<f32> {
+        self.drawn.as_ref().map_or(positions.to_vec(), |drawn| drawn.ride.lay(positions, &self.triangles))
+    }
+
+    /// Its triangles [t, 3].
+    pub fn shown_triangles(&self) -> &[u32] {
+        self.drawn.as_ref().map_or(&self.triangles, |drawn| &drawn.ride.triangles)
     }
 }

@@ -11,12 +11,15 @@ use rayon::prelude::*;
 
 /// A vertex beyond the rim of the cloth rides on the plane of its triangle, up to such coordinates; farther away it
 /// keeps its offset alone.
-const BEYOND: f64 = 3.0;
+const BEYOND: f64 = 2.0;
+/// An offset is no longer than the way to the nearest place of the cloth by this factor, and so much, metres: from
+/// farther away a vertex would swing.
+const FAR: (f64, f64) = (1.5, 1e-4);
 /// Rounds of Newton's method: the fifth digit is there after three.
 const ROUNDS: usize = 8;
 
-/// The riders of `drawn`, whose faces are of these `layers`, on the `cloth`. A vertex that halves an edge is as far from
-/// the cloth as the ends of the edge are: the cloth is round where the artist's faces were flat.
+/// The riders of `drawn`, whose faces are of these `layers`, on the `cloth`. A vertex that halves an edge is as far
+/// from the cloth as the ends of the edge are: the cloth is round where the artist's faces were flat.
 pub(super) fn bind(drawn: &Split, layers: &[Layer], cloth: &Mesh) -> Vec<Rider> {
     let layers: Vec<Layer> = drawn.faces.iter().map(|face| layers[*face]).collect();
     let mut riders = nearest(&drawn.mesh, &layers, cloth);
@@ -65,7 +68,8 @@ fn sides(drawn: &Mesh, layers: &[Layer]) -> Vec<DVec3> {
 fn coordinates(place: DVec3, corners: [DVec3; 3], normals: [DVec3; 3]) -> [f64; 4] {
     let nearest = closest(place, corners);
     let between = |weights: [f64; 3]| point(normals, weights).normalize_or(cross(corners).normalize_or_zero());
-    let plain = (place - point(corners, nearest)).dot(between(nearest));
+    let gap = place - point(corners, nearest);
+    let plain = gap.dot(between(nearest));
     let ([mut u, mut v, _], mut offset) = (nearest, plain);
     for _ in 0..ROUNDS {
         let weights = [u, v, 1.0 - u - v];
@@ -82,7 +86,8 @@ fn coordinates(place: DVec3, corners: [DVec3; 3], normals: [DVec3; 3]) -> [f64; 
     }
     let found = [u, v, 1.0 - u - v];
     let there = point(corners, found) + offset * between(found);
-    let sound = found.iter().all(|share| share.abs() <= BEYOND) && there.distance(place) < 1e-6;
+    let near = offset.abs() <= FAR.0 * gap.length() + FAR.1 && found.iter().all(|share| share.abs() <= BEYOND);
+    let sound = near && there.distance(place) < 1e-6;
     let ([a, b, c], offset) = if sound { (found, offset) } else { (nearest, plain) };
     [a, b, c, offset]
 }

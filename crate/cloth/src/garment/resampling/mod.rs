@@ -1,5 +1,5 @@
-//! A mesh to simulate, made from the one that an artist drew: one sheet, even, of chosen fineness. The artist's rides on
-//! it. simulation.md §4.4.
+//! A mesh to simulate, made from the one that an artist drew: one sheet, even, of chosen fineness. The artist's rides
+//! on it. simulation.md §4.4.
 
 mod binding;
 mod layers;
@@ -27,7 +27,7 @@ const HUMAN: f64 = 1.7;
 const VERTICES: f64 = 4000.0;
 const EDGES: [f64; 2] = [0.008, 0.015];
 /// Drawn edges are at most so long, in edges of the cloth.
-const DRAWN: f64 = 1.5;
+const DRAWN: f64 = 1.25;
 /// Edges that may be asked for, metres.
 const ASKED: [f64; 2] = [0.004, 0.05];
 /// Meshes of more vertices take too long to simulate, whoever drew them.

@@ -40,8 +40,8 @@ fn waist() -> (DVec3, f64) {
     (centre, radius + 0.02)
 }
 
-/// A skirt of `around` by `along` quads a layer, its lining 3 mm inside it, joined at waist and hem, with two pockets of
-/// `pocket` by `pocket` quads 2 mm outside it.
+/// A skirt of `around` by `along` quads a layer, its lining 3 mm inside it, joined at waist and hem, with two pockets
+/// of `pocket` by `pocket` quads 2 mm outside it.
 fn skirt(around: u32, along: u32, pocket: u32) -> Garment {
     let (centre, radius) = waist();
     let tube = move |radius: f64, turn: f64, down: f64| {

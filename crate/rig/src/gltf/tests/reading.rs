@@ -1,7 +1,7 @@
 //! Reading what was written; welding, names, units, encodings.
 
 use super::{RATE, edit, overwrite, tube, tube_file};
-use crate::gltf::write::{Appearance, write_character, write_garment};
+use crate::gltf::write::{Appearance, write_character, write_garment, write_part};
 use crate::gltf::{read_character, read_garment};
 use crate::{Garment, Mesh};
 use glam::DVec3;
@@ -65,7 +65,10 @@ fn a_garment_survives_writing_and_reading() {
     let source = tube();
     let garment = Garment { mesh: source.body.mesh, surface: source.surface, ..Garment::default() };
     write_garment(&path, &garment).unwrap();
-    let (read, _) = read_garment(&path, 0.5).unwrap();
+    let (read, ours) = read_garment(&path, 0.5).unwrap();
+    write_part(&path, &garment).unwrap();
+    let (same, theirs) = read_garment(&path, 0.5).unwrap();
+    assert!(same == read && ours.own && !theirs.own);
     assert_eq!(read.mesh.triangles.len(), garment.mesh.triangles.len());
     assert_eq!(read.surface.uv.len(), garment.surface.vertex.len());
     let doubled: Vec<DVec3> = read.mesh.positions.iter().map(|p| *p * 2.0).collect();
