@@ -10,7 +10,7 @@ mod pictures;
 use clap::{Parser, Subcommand};
 use commands::{
     bake, bench, character, evaluate, export, garment, inspect, motion, polish, predict, render, sheet, simulate,
-    study, train,
+    split, study, train,
 };
 
 /// Learned cloth for any skinned character.
@@ -22,6 +22,7 @@ use commands::{
 ///
 /// The same by steps, each resumable:
 ///
+///   ctsn split character.glb -o parts                 clothes of a character's own, apart from it
 ///   ctsn motion character.glb -o moving.glb           clips, if it has none
 ///   ctsn garment character.glb -o garment.glb         a garment, if you have none
 ///   ctsn simulate character.glb garment.glb -o data   quasi-static truth for every frame of the clips
@@ -43,6 +44,7 @@ struct Cli {
 enum Command {
     Bake(Box<bake::Arguments>),
     Character(character::Arguments),
+    Split(split::Arguments),
     Motion(motion::Arguments),
     Garment(garment::Arguments),
     Simulate(simulate::Arguments),
@@ -79,6 +81,7 @@ fn main() -> std::process::ExitCode {
     end_with_the_reader();
     let result = match Cli::parse().command {
         Command::Character(arguments) => character::run(&arguments),
+        Command::Split(arguments) => split::run(&arguments),
         Command::Motion(arguments) => motion::run(&arguments),
         Command::Garment(arguments) => garment::run(&arguments),
         Command::Render(arguments) => render::run(&arguments),
