@@ -38,6 +38,19 @@ struct Point {
     bare: bool,
 }
 
+/// Directions to the corners, edges and sides of a cube, by their step; a little aside, for along an axis rays run through
+/// edges.
+fn ways(step: usize) -> Vec<DVec3> {
+    let way = |i: usize| DVec3::new((i % 3) as f64, (i / 3 % 3) as f64, (i / 9) as f64) - 1.0;
+    let ways = (0..27).step_by(step).map(way).filter(|way| *way != DVec3::ZERO);
+    ways.map(|way| (way + DVec3::new(0.013, 0.029, 0.017)).normalize()).collect()
+}
+
+/// The share of these directions in which a face is met within `reach` metres.
+fn share(faces: &Faces, ways: &[DVec3], at: DVec3, reach: f64) -> f64 {
+    ways.iter().filter(|way| faces.first_hit(at, **way, reach).is_some()).count() as f64 / ways.len() as f64
+}
+
 /// Adds to the body what is missing of it under the garment (canonical, metres). -> what was missing, or nothing.
 pub(crate) fn complete(character: &mut Character, garment: &Mesh) -> Option<String> {
     let skin = &character.body.mesh;
@@ -75,16 +88,9 @@ pub(crate) fn complete(character: &mut Character, garment: &Mesh) -> Option<Stri
 /// The points of the bones, and whether they are bare.
 fn points(bones: &[Bone], skin: &Mesh, garment: &Mesh, extent: f64) -> Vec<Point> {
     let [skin, garment] = [skin, garment].map(Faces::new);
-    let ways: Vec<DVec3> = (0..27)
-        .map(|i| DVec3::new(f64::from(i % 3) - 1.0, f64::from(i / 3 % 3) - 1.0, f64::from(i / 9) - 1.0))
-        // A little aside: along an axis rays run through edges.
-        .filter_map(|way| (way + DVec3::new(0.013, 0.029, 0.017)).try_normalize().filter(|_| way != DVec3::ZERO))
-        .collect();
+    let (ways, reach) = (ways(1), REACH * extent);
     let all = bones.iter().flat_map(|bone| bone.points(STEP * extent).map(|at| (bone.joint, at)));
-    let share = |faces: &Faces, at: DVec3| {
-        let met = ways.iter().filter(|way| faces.first_hit(at, **way, REACH * extent).is_some());
-        met.count() as f64 / ways.len() as f64
-    };
+    let share = |faces: &Faces, at: DVec3| share(faces, &ways, at, reach);
     let point = |(joint, at)| Point { at, joint, bare: share(&skin, at) < SKIN && share(&garment, at) > COVERED };
     all.map(point).collect()
 }
@@ -100,7 +106,7 @@ fn field(points: &[Point], cloth: &Mesh, extent: f64, hip: DVec3) -> Field {
     let [low, high] = bounds(around);
     let size = ((high - low) / cell).to_array().map(|n| n.ceil() as usize + 1);
     let mut field = Field { origin: low, cell, size, values: Vec::new() };
-    let band = 3.0 * cell;
+    let (band, ways) = (3.0 * cell, ways(2));
     let nearest = |list: &[&Point], place: DVec3| {
         let near = list.iter().map(|point| (point.at.distance_squared(place), point.at));
         near.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(squared, at)| (squared.sqrt(), at))
@@ -114,10 +120,11 @@ fn field(points: &[Point], cloth: &Mesh, extent: f64, hip: DVec3) -> Field {
         }
         let off = faces.nearest(place).map_or(f64::INFINITY, |(_, foot)| foot.distance(place));
         let way = (place - at).normalize_or(DVec3::Y);
-        match faces.first_hit(at, way, distance) {
-            Some(_) => band,
-            None => depth.max(INSET * extent - off).clamp(-band, band),
-        }
+        let value = depth.max(INSET * extent - off).clamp(-band, band);
+        // Through a gap between cloth and skin a bone sees what is outside.
+        let inside =
+            || faces.first_hit(at, way, distance).is_none() && share(&faces, &ways, place, REACH * extent) > COVERED;
+        if value < band && inside() { value } else { band }
     };
     let count = size.iter().product::<usize>();
     let place = |i: usize| field.point([i % size[0], i / size[0] % size[1], i / (size[0] * size[1])]);

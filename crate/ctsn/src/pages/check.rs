@@ -64,17 +64,17 @@ pub fn faults(
                 }
             }
         }
+        @if made > 0 {
+            h2 { "The body under it" }
+            p { (made) " vertices were added where no skin was." }
+            (picture(&painted(bare, &added(complete, bare), &[HELD]), "the body that was made")?)
+        }
         @match hung {
             Err(error) => { h2 { "What cannot be mended" } (lines(&error.to_string())) },
             Ok((fitted, _)) => {
                 @if !fitted.mended.is_empty() {
                     h2 { "What was mended" }
                     ul { @for mend in &fitted.mended { li { (mend) } } }
-                }
-                @if made > 0 {
-                    h2 { "The body under it" }
-                    p { (made) " vertices were added where no skin was." }
-                    (picture(&painted(bare, &added(complete, bare), &[HELD]), "the body that was made")?)
                 }
                 h2 { "As it is simulated" }
                 p class="soft" { "Green: held by springs." }
