@@ -38,8 +38,8 @@ struct Point {
     bare: bool,
 }
 
-/// Directions to the corners, edges and sides of a cube, by their step; a little aside, for along an axis rays run through
-/// edges.
+/// Directions to the corners, edges and sides of a cube, by their step; a little aside, for along an axis rays run
+/// through edges.
 fn ways(step: usize) -> Vec<DVec3> {
     let way = |i: usize| DVec3::new((i % 3) as f64, (i / 3 % 3) as f64, (i / 9) as f64) - 1.0;
     let ways = (0..27).step_by(step).map(way).filter(|way| *way != DVec3::ZERO);

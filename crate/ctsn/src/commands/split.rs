@@ -9,10 +9,11 @@ use std::path::PathBuf;
 
 /// List what a character's file is made of, and write character and garments apart
 ///
-/// Every mesh is listed with what it looks like: by the names of material, mesh and node, or by where it is on the body.
-/// With -o FOLDER, every top, skirt, dress or pair of trousers becomes a garment (top.glb …), and the rest is the character
-/// (character.glb), with its clips and, of a VRM file, its bones. Skin that was deleted under the clothes is made anew
-/// inside a garment when it is simulated. Hair, eyes and accessories stay on the character, but hold no cloth.
+/// Every mesh is listed with what it looks like: by the names of material, mesh and node, or, with a question mark, by
+/// where it is on the body. With -o FOLDER, every named top, skirt, dress or pair of trousers becomes a garment (top.glb
+/// …), and the rest is the character (character.glb), with its clips and, of a VRM file, its bones. Skin that was
+/// deleted under the clothes is made anew inside a garment when it is simulated. Hair, eyes and accessories stay on the
+/// character, but hold no cloth.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// The character (glTF)
@@ -30,10 +31,11 @@ pub struct Arguments {
 
 pub fn run(arguments: &Arguments) -> Result<()> {
     let parts = read_parts(&arguments.character)?;
-    for (number, Listed { name, look, size: [vertices, triangles], skinned }) in parts.iter().enumerate() {
+    for (number, Listed { name, look, named, size: [vertices, triangles], skinned }) in parts.iter().enumerate() {
         let holds = if look.holds_cloth() { "" } else { "; holds no cloth" };
         let skin = if *skinned { "" } else { "; follows no joint, left out" };
-        println!("{number:>3}  {:<10} {name}: {vertices} vertices, {triangles} triangles{holds}{skin}", look.name());
+        let look = if *named { look.name().to_owned() } else { format!("{}?", look.name()) };
+        println!("{number:>3}  {look:<10} {name}: {vertices} vertices, {triangles} triangles{holds}{skin}");
     }
     let Some(folder) = &arguments.output else { return Ok(()) };
     let skinned = |part: &usize| parts.get(*part).is_some_and(|listed| listed.skinned);
@@ -42,13 +44,14 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     }
     let mut garments: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
     if arguments.garment.is_empty() {
-        let worn = (0..parts.len()).filter(|part| skinned(part) && parts[*part].look.is_garment());
+        let worn =
+            (0..parts.len()).filter(|part| skinned(part) && parts[*part].named && parts[*part].look.is_garment());
         worn.for_each(|part| garments.entry(parts[part].look.name()).or_default().push(part));
     } else {
         garments.insert("garment", arguments.garment.clone());
     }
     let worn: Vec<usize> = garments.values().flatten().copied().collect();
-    ensure!(!worn.is_empty(), "none of its parts looks like a garment; name them: --garment 2,3");
+    ensure!(!worn.is_empty(), "none of its parts is named like a garment; choose them: --garment 2,3");
     ensure!(
         worn.len() < parts.iter().filter(|part| part.skinned).count(),
         "all of its parts are garments: no body is left"

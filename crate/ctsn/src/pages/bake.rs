@@ -9,6 +9,21 @@ use ctsn_train::report::Report;
 use maud::{Markup, html};
 use std::path::Path;
 
+/// A page, as the README has it; MODEL: the file.
+const PAGE: &str = "import { loadModel } from 'ctsn';
+import { Cloth } from 'ctsn/three';
+
+const model = await loadModel('MODEL');
+// The character that GLTFLoader gave you; material: DoubleSide.
+const cloth = new Cloth(model, gltf.scene, material);
+scene.add(cloth);
+
+renderer.setAnimationLoop(() => {
+  mixer.update(clock.getDelta());
+  cloth.update();
+  renderer.render(scene, camera);
+});";
+
 /// Share of the poses that a bake should keep.
 const KEPT: f64 = 0.9;
 /// Shares and figures beyond which something is worth saying: of the unseen frames' distance to plain skinning's.
@@ -42,12 +57,7 @@ pub fn before(
 /// After the errors: what would be better, and how to use it. `ratio`: of E_dist to that of plain skinning.
 pub fn after(report: &Report, ratio: f64, model: &str) -> Markup {
     let advice = advice(report, ratio);
-    let code = format!(
-        "import {{ loadModel }} from 'ctsn';\nimport {{ Cloth }} from 'ctsn/three';\n\nconst model = await \
-         loadModel('{model}');\nconst cloth = new Cloth(model, gltf.scene, material);  // the character that GLTFLoader gave \
-         you\nscene.add(cloth);\n\nrenderer.setAnimationLoop(() => {{\n  mixer.update(clock.getDelta());\n  \
-         cloth.update();\n  renderer.render(scene, camera);\n}});"
-    );
+    let code = PAGE.replace("MODEL", model);
     html! {
         h2 { "What would be better" }
         ul { @for advice in &advice { li { (advice) } } }

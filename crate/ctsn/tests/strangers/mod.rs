@@ -199,7 +199,7 @@ fn what_a_check_refuses_is_on_its_page() {
 fn a_dressed_character_is_split() {
     let folder = Folder::new();
     folder.accepts("character mannequin -o character.glb");
-    folder.refuses("split character.glb -o parts", &["none of its parts looks like a garment", "--garment"]);
+    folder.refuses("split character.glb -o parts", &["none of its parts is named like a garment", "--garment"]);
     // The last quarter of its faces as a part of its own, which its material calls a top.
     edit(&folder.path("character.glb"), |json, _| {
         let mut primitive = json["meshes"][0]["primitives"][0].clone();

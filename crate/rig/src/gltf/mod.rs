@@ -37,8 +37,9 @@ type Read<T> = std::result::Result<T, String>;
 ///
 /// All skinned meshes become one body. The glTF skin with most vertices sets the canonical space. A vertex without
 /// weights takes those of the nearest vertex that has some, or follows the hip when none has. A body that faces inwards
-/// is turned. Hair, eyes and accessories, by their names, are drawn, but hold no cloth. Morph targets are taken as exported: by the weights of their mesh. Meshes without a skin and animations
-/// that move no joint are left out. A file without clips is accepted, see [`Character::clip`].
+/// is turned. Hair, eyes and accessories, by their names, are drawn, but hold no cloth. Morph targets are taken as
+/// exported: by the weights of their mesh. Meshes without a skin and animations that move no joint are left out. A file
+/// without clips is accepted, see [`Character::clip`].
 pub fn read_character(path: &Path, rate: f64) -> Result<Character> {
     let file = File::open(path)?;
     character(&file, rate).map_err(|reason| Error::File { path: path.into(), reason })
@@ -51,6 +52,8 @@ pub struct Listed {
     pub name: String,
     /// What it looks like.
     pub look: Look,
+    /// Whether its names say so; else its place on the body does.
+    pub named: bool,
     /// Vertices and triangles.
     pub size: [usize; 2],
     /// Whether it follows joints; what does not is left out of characters.
@@ -268,6 +271,7 @@ fn listed(file: &File) -> Read<Vec<Listed>> {
             .cloned()
             .collect::<Vec<_>>()
             .join(", "),
+        named: Look::named(&part.names).is_some(),
         look: Look::named(&part.names).unwrap_or_else(|| Look::placed(bounds(places.iter().copied()), whole)),
         size: [part.positions.len(), part.triangles.len()],
         skinned: part.skin.is_some(),

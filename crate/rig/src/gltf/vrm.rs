@@ -36,8 +36,8 @@ pub(super) fn parts(json: &Value) -> BTreeMap<String, usize> {
     listed.chain(mapped).collect()
 }
 
-/// The extension `VRMC_vrm` (1.0) of these parts and their nodes: its bones alone, for whose the character is and what may
-/// be done with it nobody has said here. None where no part is one of its bones.
+/// The extension `VRMC_vrm` (1.0) of these parts and their nodes: its bones alone, for whose the character is and what
+/// may be done with it nobody has said here. None where no part is one of its bones.
 pub(super) fn extension(parts: &BTreeMap<String, usize>) -> Option<Value> {
     let bones = parts.iter().filter_map(|(part, node)| Some((bone(part)?, json!({ "node": node }))));
     let bones: serde_json::Map<String, Value> = bones.collect();

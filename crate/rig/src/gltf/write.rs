@@ -33,8 +33,8 @@ impl Default for Appearance {
 
 /// Writes a character as GLB: the body with its skin, and one animation per clip, sampled at the clip's rate.
 ///
-/// Joints become nodes with translation, rotation and scale; shear in a pose is lost. Named parts become VRM's bones. What
-/// is drawn and holds no cloth is a primitive of its own, whose material is named hair. The file's own pose is the
+/// Joints become nodes with translation, rotation and scale; shear in a pose is lost. Named parts become VRM's bones.
+/// What is drawn and holds no cloth is a primitive of its own, whose material is named hair. The file's own pose is the
 /// canonical one, so a character of 0.1 to 10 m reads back with `metres_per_unit` 1.
 pub fn write_character(path: &Path, character: &Character, appearance: &Appearance) -> Result<()> {
     let mut file = Writer::default();

@@ -1,5 +1,5 @@
-//! Tight trousers on bent knees, where calf and thigh pass into each other: cloth that is let go there must not end deep
-//! inside.
+//! Tight trousers on bent knees, where calf and thigh pass into each other: cloth that is let go there must not end
+//! deep inside.
 
 use glam::DVec3;
 
