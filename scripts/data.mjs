@@ -1,6 +1,6 @@
 // npm run data: simulates the project's pairs of character and garment into out/pairs, with a report and a contact
 // sheet of each.
-//   npm run data                           all ten pairs, 80 poses each
+//   npm run data                           all pairs, 80 poses each
 //   npm run data -- andy-tshirt fox-cape   only these
 //   npm run data -- --full                 three of them at full size: 1,300 poses each, and mixed poses for training
 //   npm run data -- --on figure.glb --kind tshirt --mixed 300   a character of your own, with its own clips
@@ -8,25 +8,14 @@
 import { existsSync, mkdirSync } from 'node:fs';
 import { basename } from 'node:path';
 import { parseArgs } from 'node:util';
+import { PAIRS } from './pairs.mjs';
 import { Stop, at, main, need, say } from './step.mjs';
 
-/** The pairs, with the number of mixed poses for those that `--full` makes. */
-const PAIRS = {
-  'andy-tshirt': { mixed: 0 },
-  'andy-dress': {},
-  'qman-robe': { mixed: 2300 },
-  'qman-tshirt': {},
-  'monster-robe': {},
-  'dolphin-vest': {},
-  'cat-coat': {},
-  'fox-cape': { mixed: 1600 },
-  'sphere-sheet': {},
-  'box-sheet': {},
-};
 /** Poses of a dataset, spread evenly over the frames of its clips at `RATE` per second. A full one extends a small. */
 const POSES = { small: 80, full: 1300 };
 const RATE = 10;
-const VERTICES = '2100';
+/** Vertices of a garment on a character of one's own. */
+const VERTICES = 2100;
 /** Poses simulated twice for the noise floor. */
 const TWINS = '8';
 /**
@@ -37,12 +26,12 @@ const PINCHED = { own: '0', others: '0.03' };
 
 const ctsn = (...list) => need(at('target/release/ctsn'), list);
 
-async function simulate(character, kind, poses, mixed, pinched, name) {
+async function simulate(character, kind, vertices, poses, mixed, pinched, name) {
   const garment = at(`out/pairs/${name}.glb`);
   const data = at(`out/pairs/${name}`);
   say(name);
   if (!existsSync(garment)) {
-    await ctsn('garment', character, '--kind', kind, '--vertices', VERTICES, '-o', garment);
+    await ctsn('garment', character, '--kind', kind, '--vertices', String(vertices), '-o', garment);
   }
   const sampling = ['--rate', RATE, '--poses', poses, '--mixed', mixed, '--noise-floor', TWINS, '--pinched', pinched];
   await ctsn('simulate', character, garment, ...sampling.map(String), '-o', data);
@@ -59,7 +48,7 @@ await main(async () => {
   const poses = values.full ? POSES.full : POSES.small;
   if (values.on) {
     const kind = values.kind ?? 'tshirt';
-    return simulate(values.on, kind, poses, values.mixed ?? 0, PINCHED.others, `${basename(values.on, '.glb')}-${kind}`);
+    return simulate(values.on, kind, VERTICES, poses, values.mixed ?? 0, PINCHED.others, `${basename(values.on, '.glb')}-${kind}`);
   }
   const all = Object.keys(PAIRS).filter((name) => !values.full || 'mixed' in PAIRS[name]);
   for (const name of positionals.length > 0 ? positionals : all) {
@@ -67,6 +56,6 @@ await main(async () => {
     const [figure, kind] = name.split('-');
     const character = at(`out/pairs/${figure}.glb`);
     if (!existsSync(character)) await ctsn('character', figure, '-o', character);
-    await simulate(character, kind, poses, values.full ? (PAIRS[name].mixed ?? 0) : 0, PINCHED.own, name);
+    await simulate(character, kind, PAIRS[name].vertices, poses, values.full ? (PAIRS[name].mixed ?? 0) : 0, PINCHED.own, name);
   }
 });

@@ -107,7 +107,11 @@ params! {
     /// `Params` of normals.wgsl.
     Normals { vertices: u32 }
     /// `Params` of polish.wgsl.
-    Polish { vertices: u32, rate: f32, momentum: f32 }
+    Polish { vertices: u32, own: f32, others: f32, momentum: f32 }
+    /// `Params` of pull.wgsl.
+    Pull { vertices: u32 }
+    /// `Params` of ride.wgsl.
+    Ride { riders: u32, least: f32 }
     /// `Params` of skin.wgsl.
     Skin { vertices: u32, width: u32, back: u32, world: u32 }
     /// `Params` of slide.wgsl.
@@ -158,8 +162,12 @@ shaders! {
     LINEAR_ROW: Linear, "linear.row" + [], [Read Read Read Write], [8, 1];
     /// Positions, offsets, corners -> normals.
     NORMALS: Normals, "normals" + [], [Read Read Read Write], [64, 1];
-    /// Offsets, neighbours, squares, share, current -> other.
-    POLISH: Polish, "polish" + [], [Read Read Read Read Read Write], [64, 1];
+    /// Offsets, neighbours, share, pulls -> moves, positions.
+    POLISH: Polish, "polish" + [], [Read Read Read Read Write Write], [64, 1];
+    /// Offsets, neighbours, squares, positions -> pulls.
+    PULL: Pull, "pull" + [], [Read Read Read Read Write], [64, 1];
+    /// Corners, coordinates, positions, normals -> riders.
+    RIDE: Ride, "ride" + [], [Read Read Read Read Write], [64, 1];
     /// Exposed body, its normals, offsets, fans, seeds, displacement -> positions.
     SETTLE: Collide, "settle" + ["collide.foot", "collide.walk", "collide.triangle"], [Read Read Read Read Read Read Write], [64, 1];
     /// Rest, joints, weights, transforms -> positions.

@@ -17,13 +17,16 @@ beforeAll(async () => (site = await Site.open()));
 afterEach(() => site.leave());
 afterAll(() => site?.close());
 
-test('the page plays, goes on predicting, and its controls work', async () => {
+/** Opens a room of the panel. */
+const open = (page: Awaited<ReturnType<Site['visit']>>['page'], room: string) =>
+  page.locator('summary').filter({ hasText: room }).click();
+
+test('the page plays, goes on predicting, and rests when nothing moves', async () => {
   const { page, complaints } = await site.visit();
   await page.waitForFunction(() => window.ctsnDemo!.predictions! >= 5);
   expect(await ask(page, (demo) => demo.milliseconds, null)).toBeGreaterThan(0);
+  await open(page, 'Cost');
   await expect.poll(() => page.textContent('#milliseconds'), patience).toMatch(/^\d+\.\d+ ms$/);
-  await page.getByLabel('Plain skinning').check({ force: true });
-  await page.getByLabel('Show the mesh').check();
   await page.getByRole('button', { name: 'Pause' }).click();
   expect(await page.getByRole('button', { name: 'Play' }).isVisible()).toBe(true);
   const frozen = await page.textContent('#clock');
@@ -31,12 +34,11 @@ test('the page plays, goes on predicting, and its controls work', async () => {
   expect(await page.textContent('#clock')).toBe(frozen);
   // At rest nothing is drawn, until the camera moves.
   const before = (await ask(page, (demo) => demo.predictions, null))!;
-  await page.mouse.move(300, 300);
+  await page.mouse.move(480, 200);
   await page.mouse.wheel(0, -400);
   await expect.poll(() => ask(page, (demo) => demo.predictions, null), patience).toBeGreaterThan(before);
   await page.getByLabel('Time within the clip').fill('0.5');
   await expect.poll(() => page.textContent('#clock'), patience).toMatch(/^0\.50 s of/);
-  await page.screenshot({ path: `${out}/mesh.png` });
   expect(complaints).toEqual([]);
 });
 
@@ -49,9 +51,9 @@ test.each(Object.entries(modules))('vertices and normals equal the native predic
   const { page, complaints, files } = await site.visit('', (bare) => bare.addInitScript(module.prepare));
   expect(files.filter((name) => name.endsWith('.wasm'))).toEqual([expect.stringMatching(module.file)]);
   const clips = await ask(page, (demo) => demo.clips, null);
-  expect(Object.keys(clips).length).toBeGreaterThan(0);
+  expect(Object.keys(clips!).length).toBeGreaterThan(0);
   const captures = [];
-  for (const [clip, length] of Object.entries(clips)) {
+  for (const [clip, length] of Object.entries(clips!)) {
     for (const part of [0.13, 0.7]) {
       const wanted = { clip, frame: Math.floor(part * length) };
       captures.push(await ask(page, (demo, { clip, frame }) => demo.show(clip, frame), wanted));
@@ -73,7 +75,7 @@ test.each(Object.entries(modules))('vertices and normals equal the native predic
   expect(complaints).toEqual([]);
 });
 
-test('the three sources of the cloth differ on the page', async () => {
+test('the three sources of the cloth differ on the page, and are seen side by side', async () => {
   const { page, complaints } = await site.visit();
   const [[clip, length]] = Object.entries(await ask(page, (demo) => demo.clips, null)) as [[string, number]];
   const frame = Math.floor(length / 2);
@@ -82,11 +84,32 @@ test('the three sources of the cloth differ on the page', async () => {
     const wanted = { clip, frame, quality };
     const show = (demo: Demo, { clip, frame, quality }: typeof wanted) => demo.show(clip, frame, quality);
     found[quality] = (await ask(page, show, wanted)).positions;
-    await page.screenshot({ path: `${out}/${quality}.png` });
   }
   // The mesh stream does less than the skeleton stream, but surely a tenth of a millimetre somewhere.
   expect(difference(found['full']!, found['coarse']!)).toBeGreaterThan(1e-4);
   expect(difference(found['coarse']!, found['skinned']!)).toBeGreaterThan(1e-3);
+  await ask(page, (demo, { clip, frame }) => demo.show(clip, frame), { clip, frame });
+  const strip = () => page.screenshot({ clip: { x: 300, y: 0, width: 360, height: 500 } });
+  const alone = await strip();
+  await open(page, 'Compare');
+  await page.getByLabel('with plain skinning').check({ force: true });
+  expect(await page.getByText('Plain skinning', { exact: true }).isVisible()).toBe(true);
+  await expect.poll(async () => (await strip()).equals(alone), patience).toBe(false);
+  await page.getByLabel('Where the network').fill('0.2');
+  await page.screenshot({ path: `${out}/compare.png` });
+  expect(complaints).toEqual([]);
+});
+
+test('maps tell of fit, stretch and confidence, with a legend', async () => {
+  const { page, complaints } = await site.visit('?pose=dance:40');
+  await open(page, 'Maps');
+  for (const [map, most] of [['Fit', '80 mm and more'], ['Stretch', '20 % longer'], ['Confidence', '100 %']]) {
+    await page.getByRole('radio', { name: map! }).check({ force: true });
+    expect(await page.textContent('#legend-most')).toBe(most);
+    await page.waitForTimeout(300);
+    await page.screenshot({ path: `${out}/map-${map!.toLowerCase()}.png` });
+  }
+  expect(await page.getByRole('figure').isVisible()).toBe(true);
   expect(complaints).toEqual([]);
 });
 
@@ -98,7 +121,6 @@ test('?pose=CLIP:FRAME stops the page at that frame of the clip', async () => {
   await site.leave();
   const { page, complaints } = await site.visit(`?pose=${encodeURIComponent(clip)}:${wanted.frame}`);
   expect(await page.getByRole('button', { name: 'Play' }).isVisible()).toBe(true);
-  expect(await page.textContent('#clock')).toContain(`${(wanted.frame / 30).toFixed(2)} s of`);
   const stopped = await ask(page, (demo) => demo.capture(), null);
   expect(stopped).toMatchObject({ clip, frame: expect.closeTo(wanted.frame, 3) as number });
   expect(stopped.positions).toEqual(shown.positions);
@@ -106,17 +128,19 @@ test('?pose=CLIP:FRAME stops the page at that frame of the clip', async () => {
   expect(complaints).toEqual([]);
 });
 
-test('a failure is told on the page: no model, a broken model, no such clip', async () => {
+test('a failure is told on the page: no model, a broken model, no such clip or figure', async () => {
   const shirt = '**/tshirt.safetensors';
   const missing = await site.visit('', (page) => page.route(shirt, (route) => route.fulfill({ status: 404 })));
-  expect(await missing.page.getByRole('alert').textContent()).toContain('HTTP 404');
+  expect(await missing.page.getByRole('alert').textContent()).toMatch(/garment "tshirt".*HTTP 404/);
   const noModel = { body: 'no model at all' };
   const broken = await site.visit('', (page) => page.route(shirt, (route) => route.fulfill(noModel)));
   expect(await broken.page.getByRole('alert').textContent()).toContain('not a safetensors file');
   await broken.page.screenshot({ path: `${out}/failure.png` });
   const nowhere = await site.visit('?pose=no_such_clip:1');
   expect(await nowhere.page.getByRole('alert').textContent()).toContain('no_such_clip');
-  for (const { complaints } of [missing, broken, nowhere]) expect(complaints.length).toBeGreaterThan(0);
+  const nobody = await site.visit('?figure=nobody');
+  expect(await nobody.page.getByRole('alert').textContent()).toContain('there is no figure "nobody"');
+  for (const { complaints } of [missing, broken, nowhere, nobody]) expect(complaints.length).toBeGreaterThan(0);
 });
 
 test('what only WebGPU needs is fetched for a device, and never without one', async () => {
@@ -136,8 +160,9 @@ test('what only WebGPU needs is fetched for a device, and never without one', as
 
 test('the cloth is computed elsewhere at a click, and the page says where and why', async () => {
   const { page, complaints } = await site.visit();
-  const [clip] = Object.keys(await ask(page, (demo) => demo.clips, null)) as [string];
+  const [clip] = Object.keys((await ask(page, (demo) => demo.clips, null))!) as [string];
   const onCpu = await ask(page, (demo, at) => demo.show(at, 12), clip);
+  await open(page, 'Cost');
   expect(await page.textContent('#backend')).toBe('Processor');
   await page.getByLabel('WebGPU').check({ force: true });
   await expect.poll(() => page.textContent('#backend'), patience).toMatch(/^WebGPU, ./);
@@ -149,7 +174,6 @@ test('the cloth is computed elsewhere at a click, and the page says where and wh
   await page.getByLabel('Faster').check({ force: true });
   const measured = /the CPU is faster here: [\d.]+ ms a prediction, the GPU [\d.]+ ms|Measured: [\d.]+ ms/;
   await expect.poll(() => page.textContent('#reason'), patience).toMatch(measured);
-  await page.screenshot({ path: `${out}/auto.png` });
   await site.leave();
   const hide = "Object.defineProperty(navigator, 'gpu', { value: undefined })";
   const none = await site.visit('?backend=webgpu', (bare) => bare.addInitScript(hide));

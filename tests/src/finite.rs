@@ -17,7 +17,8 @@ pub fn pose(joints: usize) -> Vec<f32> {
 pub fn predict(predictor: &mut Predictor, pose: &[f32]) -> bool {
     let one = |streams| match predictor.predict_row_major(pose, streams) {
         Ok(()) => {
-            let mut results = predictor.positions().iter().chain(predictor.normals());
+            let shown = predictor.shown_positions().iter().chain(predictor.shown_normals());
+            let mut results = predictor.positions().iter().chain(predictor.normals()).chain(shown);
             assert!(results.all(|value| value.is_finite()), "{streams:?}: a prediction that is not finite");
             true
         }

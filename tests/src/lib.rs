@@ -5,6 +5,7 @@
 
 pub mod finite;
 pub mod golden;
+pub mod layered;
 pub mod nested;
 pub mod random;
 pub mod sphere;

@@ -84,6 +84,7 @@ pub fn model(rng: &mut Rng, shape: Shape) -> HostModel {
         mesh_basis: numbers(rng, n * 3 * basis, 0.1),
         mesh_stream: true,
         surface: Some(Surface { uv: vec![0.0; 2 * drawn.len()], vertex: drawn, triangles: Vec::new() }),
+        ride: None,
         cut: Some(Cut::new(numbers(rng, n * 3, 1.0), &graph, 4).expect("no two vertices at one place")),
         body: None,
         training: None,

@@ -7,7 +7,7 @@ use ctsn_core::file::Tensors;
 use ctsn_core::model::HostModel;
 use ctsn_core::{Folds, Predictor, Shares, Streams};
 use ctsn_tests::random::column_major;
-use ctsn_tests::{golden, sphere};
+use ctsn_tests::{golden, layered, sphere};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -70,6 +70,7 @@ fn prediction_allocates_once() {
         let mut made = None;
         let mut model = HostModel::parse(small.model).expect("golden model");
         model.body = Some(sphere::body(model.sizes.vertices));
+        let model = layered::itself(&model);
         assert!(calls(|| made = Some(Predictor::from_model(model, level))) > 10, "the counter counts");
         let mut predictor = made.expect("a predictor");
         let size = 12 * predictor.sizes().joints;
@@ -99,6 +100,7 @@ fn prediction_allocates_once() {
 fn threads_allocate_nothing_but_their_scratch(poses: &[f32]) {
     let mut model = HostModel::parse(golden::ALL[1].model).expect("golden model");
     model.body = Some(sphere::body(model.sizes.vertices));
+    let model = layered::itself(&model);
     let pose = &poses[..12 * model.sizes.joints];
     let mut predictor = Predictor::on_threads(model, Level::new(), Threads::new(3).expect("threads"));
     let mut predict = |frames: usize| {

@@ -4,7 +4,7 @@ use ctsn_core::file::{Tensor, Tensors};
 use ctsn_core::model::{HostModel, Storage};
 use ctsn_core::{Predictor, Result};
 use ctsn_tests::finite::{pose, predict};
-use ctsn_tests::{golden, sphere};
+use ctsn_tests::{golden, layered, sphere};
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::{wasm_bindgen_test as test, wasm_bindgen_test_configure};
 
@@ -45,7 +45,7 @@ fn flipped_files_are_refused_or_finite() {
     };
     let mut whole = HostModel::parse(TINY).expect("golden model");
     whole.body = Some(sphere::body(whole.sizes.vertices));
-    let whole = whole.to_bytes(Storage::F32);
+    let whole = layered::itself(&whole).to_bytes(Storage::F32);
     let (length, payload) = header(&whole);
     let (mut refused, mut finite) = (0, 0);
     for round in 0..FLIPS {
@@ -196,6 +196,50 @@ fn indices_out_of_range_are_refused() {
     assert!(surface(23, 2).is_ok());
     assert_kind(surface(24, 2), "index", "draw.vertex");
     assert_kind(surface(23, 3), "index", "draw.triangles");
+}
+
+#[test]
+fn drawn_meshes_that_ride_on_nothing_are_refused() {
+    type Change = (&'static str, Tensor<'static>);
+    let riding = |changes: &[Change], without: &str| {
+        lie(|file| {
+            file.tensors.insert("draw.vertex".to_owned(), Tensor::u32(&[3], &[0, 1, 1]));
+            file.tensors.insert("draw.uv".to_owned(), Tensor::f32(&[3, 2], &[0.0; 6]));
+            file.tensors.insert("draw.triangles".to_owned(), Tensor::u32(&[1, 3], &[0, 1, 2]));
+            file.tensors.insert("draw.corners".to_owned(), Tensor::u32(&[2, 3], &[0, 1, 2, 3, 4, 23]));
+            let coordinates = [0.5, 0.25, 0.25, 0.01, 1.5, -0.5, 0.0, -0.01];
+            file.tensors.insert("draw.coordinates".to_owned(), Tensor::f32(&[2, 4], &coordinates));
+            changes.iter().for_each(|(name, tensor)| drop(file.tensors.insert((*name).to_owned(), tensor.clone())));
+            file.tensors.remove(without);
+        })
+    };
+    assert!(riding(&[], "").is_ok());
+    for name in ["draw.vertex", "draw.corners", "draw.coordinates"] {
+        assert_kind(riding(&[], name), "missing_tensor", name);
+    }
+    let corners = |corner: u32| ("draw.corners", Tensor::u32(&[2, 3], &[0, 1, 2, 3, 4, corner]));
+    assert_kind(riding(&[corners(24)], ""), "index", "draw.corners");
+    assert_kind(riding(&[("draw.vertex", Tensor::u32(&[3], &[0, 1, 2]))], ""), "index", "draw.vertex");
+    assert_kind(riding(&[("draw.corners", Tensor::u32(&[3, 2], &[0; 6]))], ""), "shape", "draw.corners");
+    let coordinates = |first: [f32; 4]| {
+        let values = [first, [1.0, 0.0, 0.0, 0.0]].concat();
+        riding(&[("draw.coordinates", Tensor::f32(&[2, 4], &values))], "")
+    };
+    assert_kind(coordinates([0.5, 0.5, 0.5, 0.0]), "not_model", "draw.coordinates");
+    assert_kind(coordinates([20.0, -19.0, 0.0, 0.0]), "not_model", "draw.coordinates");
+    for value in [f32::NAN, f32::INFINITY] {
+        assert_kind(coordinates([1.0, 0.0, 0.0, value]), "not_finite", "draw.coordinates");
+    }
+    let none = [("draw.corners", Tensor::u32(&[0, 3], &[])), ("draw.coordinates", Tensor::f32(&[0, 4], &[]))];
+    assert_kind(riding(&none, ""), "shape", "draw.coordinates");
+    // Where riders alone overflow, the prediction is refused.
+    let mut model = layered::itself(&HostModel::parse(TINY).expect("golden model"));
+    let ride = model.ride.as_mut().expect("riders");
+    ride.coordinates[..4].copy_from_slice(&[16.0, -15.0, 0.0, f32::MAX]);
+    model.rest[..6].copy_from_slice(&[1e38, 1e38, 1e38, -1e38, -1e38, -1e38]);
+    model.skeleton_basis.fill(0.0);
+    let mut predictor = Predictor::new(&model.to_bytes(Storage::F32)).expect("a predictor");
+    assert!(!predict(&mut predictor, &pose(3)));
 }
 
 #[test]

@@ -1,7 +1,7 @@
 // The same with three.js.
 import { DoubleSide, MeshStandardMaterial, type Object3D, type PerspectiveCamera } from 'three';
 import { loadModel } from 'ctsn';
-import { Cloth, ClothLoader, Wardrobe } from 'ctsn/three';
+import { Cloth, ClothLoader, ClothScheduler } from 'ctsn/three';
 
 export async function dress(character: Object3D): Promise<Cloth> {
   const material = new MeshStandardMaterial({ side: DoubleSide });
@@ -13,9 +13,9 @@ export async function dress(character: Object3D): Promise<Cloth> {
 }
 
 export async function share(cloths: Cloth[], camera: PerspectiveCamera): Promise<number> {
-  const wardrobe = new Wardrobe({ budget: 8 });
-  wardrobe.add(...cloths);
-  wardrobe.update(camera);
+  const scheduler = new ClothScheduler({ budget: 8 });
+  scheduler.add(...cloths);
+  scheduler.update(camera);
   const model = await new ClothLoader().setPath('models/').loadAsync('model.safetensors');
-  return model.vertexCount + wardrobe.spent;
+  return model.vertexCount + scheduler.spent;
 }

@@ -7,33 +7,40 @@ const arrivals = new Map<string, Arrival>();
 class Arrival {
   readonly #address: string;
   readonly #bytes: Promise<Uint8Array>;
-  readonly #listeners = new Set<{ hear: (progress: Progress) => void }>();
+  readonly #listeners = new Set<Pick<DownloadOptions, 'onProgress' | 'onPart'>>();
+  /** What has come, for those who ask late. */
+  #parts: Uint8Array[] = [];
   readonly #request = new AbortController();
   /** How many wait for it. */
   #waiting = 0;
   /** Whether it is kept although nobody waits. */
   #kept = false;
 
-  private constructor(address: string) {
+  private constructor(address: string, cache: string | undefined) {
     this.#address = address;
-    const onProgress = (progress: Progress) => this.#listeners.forEach(({ hear }) => hear(progress));
-    this.#bytes = download(address, { onProgress, request: { signal: this.#request.signal } });
+    const onProgress = (progress: Progress) => this.#listeners.forEach((listener) => listener.onProgress?.(progress));
+    const onPart = (part: Uint8Array) => {
+      this.#parts.push(part);
+      this.#listeners.forEach((listener) => listener.onPart?.(part));
+    };
+    this.#bytes = download(address, { onProgress, onPart, cache, request: { signal: this.#request.signal } });
     // A failure is no file to be kept; whoever waits is told.
     this.#bytes.catch(() => this.#forget());
   }
 
-  static of(address: string): Arrival {
+  static of(address: string, cache: string | undefined): Arrival {
     let arrival = arrivals.get(address);
-    if (!arrival) arrivals.set(address, (arrival = new Arrival(address)));
+    if (!arrival) arrivals.set(address, (arrival = new Arrival(address, cache)));
     return arrival;
   }
 
   /** The file [bytes]; `keep` it for the next who wants it. When the last who waits gives up, so does the request. */
-  async wait(keep: boolean, { onProgress, signal }: DownloadOptions): Promise<Uint8Array> {
+  async wait(keep: boolean, { onProgress, onPart, signal }: DownloadOptions): Promise<Uint8Array> {
     this.#waiting++;
     // An object of its own: one function may listen for several loads.
-    const listener = { hear: onProgress ?? (() => undefined) };
+    const listener = { onProgress, onPart };
     this.#listeners.add(listener);
+    if (onPart) this.#parts.forEach(onPart);
     try {
       const bytes = await until(signal, this.#bytes);
       this.#kept = keep;
@@ -59,14 +66,14 @@ class Arrival {
 export async function fetchFile(source: string | URL, options: DownloadOptions): Promise<Uint8Array> {
   const { signal, request } = options;
   signal?.throwIfAborted();
-  if (!request) return Arrival.of(String(source)).wait(false, options);
+  if (!request) return Arrival.of(String(source), options.cache).wait(false, options);
   return download(source, signal ? { ...options, request: { ...request, signal } } : options);
 }
 
 /** Fetches a file ahead. It is kept until somebody wants it. */
 export async function fetchAhead(source: string | URL, options: DownloadOptions): Promise<void> {
   options.signal?.throwIfAborted();
-  await Arrival.of(String(source)).wait(true, options);
+  await Arrival.of(String(source), options.cache).wait(true, options);
 }
 
 /** What comes of `work`, or the reason of `signal` where that is aborted first. */

@@ -15,6 +15,11 @@ export type BackendChoice = 'auto' | Backend;
 /** Milliseconds per prediction, as measured when `auto` chose. */
 export type Measured = Readonly<Record<Backend, number>>;
 
+/** Codes of failures of the GPU, after which the CPU can go on. */
+export const deviceFaults: ReadonlySet<string> = /* @__PURE__ */ new Set([
+  ...['no_adapter', 'no_device', 'limit', 'out_of_memory', 'refused', 'lost', 'missing'],
+]);
+
 /** Seconds to wait before each attempt to get a device of our own again. */
 const PATIENCE = [0, 1, 2, 4, 8, 16, 32];
 
@@ -43,7 +48,7 @@ export class Switch {
   adapter: string | undefined;
   measured: Measured | undefined;
 
-  readonly #cpu: Predictor;
+  #cpu: Predictor;
   readonly #openSide: Opener;
   readonly #aside: <T>(work: (pose: Float32Array) => T) => T;
   readonly #changed: () => void;
@@ -79,6 +84,11 @@ export class Switch {
   /** Back to the CPU: the device failed. */
   fail(error: unknown): void {
     if (this.running) this.#leave(messageOf(error));
+  }
+
+  /** Another predictor takes the CPU's place. */
+  replace(cpu: Predictor): void {
+    this.#cpu = cpu;
   }
 
   dispose(): void {

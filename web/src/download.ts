@@ -14,17 +14,26 @@ export interface DownloadOptions {
   onProgress?: ((progress: Progress) => void) | undefined;
   /** Passed to `fetch`: headers, credentials. Files asked for in a way of one's own are not shared. */
   request?: RequestInit | undefined;
+  /**
+   * Keeps the file in the page's Cache Storage of this name, by its address: the next visit asks no server. A new
+   * version wants a new address, such as `shirt.safetensors?v=2`, and takes the old one's place. Ignored where there is
+   * no Cache Storage: in Node, on pages without https.
+   */
+  cache?: string | undefined;
   /** Ends it; the call is refused with the signal's reason. */
   signal?: AbortSignal | undefined;
+  /** @internal Takes every piece that comes. */
+  onPart?: ((part: Uint8Array) => void) | undefined;
 }
 
 /** Fetches a file to its end, reporting true byte sizes; `file:` addresses work in Node. */
 export async function download(
   address: string | URL,
-  { onProgress, request }: DownloadOptions = {},
+  { onProgress, onPart, request, cache }: DownloadOptions = {},
 ): Promise<Uint8Array> {
   const local = readLocal(address);
   if (local) {
+    onPart?.(local);
     onProgress?.({ loaded: local.length, total: local.length });
     return local;
   }
@@ -32,22 +41,45 @@ export async function download(
     if (request?.signal?.aborted) throw cause;
     throw new CtsnError('fetch', `${String(address)}: ${what} (${String(cause)})`, { cause });
   };
-  const response = await fetch(address, request).catch(refuse('no answer'));
+  const response = await ask(address, request, cache).catch(refuse('no answer'));
   if (!response.ok) {
     const { status, statusText } = response;
     throw new CtsnError('fetch', `${String(address)}: HTTP ${status} ${statusText}`.trim(), { status });
   }
-  return collect(response, onProgress, refuse('the answer broke off'));
+  return collect(response, { onProgress, onPart }, refuse('the answer broke off'));
+}
+
+/** The answer to a request: what the cache has, or what comes, which it takes once it has come. */
+async function ask(address: string | URL, request: RequestInit | undefined, cache: string | undefined): Promise<Response> {
+  // A page may be forbidden to keep anything; then it asks each time.
+  const store = cache === undefined ? undefined : await globalThis.caches?.open(cache).catch(() => undefined);
+  const kept = await store?.match(address);
+  if (kept) return kept;
+  const response = await fetch(address, request);
+  if (store && response.ok) keep(store, response.clone(), address).catch(() => undefined);
+  return response;
+}
+
+/** Keeps an answer in place of those with other versions of its address. */
+async function keep(store: Cache, response: Response, address: string | URL): Promise<void> {
+  await store.put(address, response);
+  const all = await store.keys(address, { ignoreSearch: true });
+  const own = (await store.keys(address))[0]?.url;
+  for (const key of all) if (key.url !== own) await store.delete(key);
 }
 
 async function collect(
   response: Response,
-  onProgress: DownloadOptions['onProgress'],
+  { onProgress, onPart }: Pick<DownloadOptions, 'onProgress' | 'onPart'>,
   refuse: (cause: unknown) => never,
 ): Promise<Uint8Array> {
   const announced = Number(response.headers.get('content-length'));
   const total = announced > 0 && !response.headers.get('content-encoding') ? announced : undefined;
-  if (!response.body) return new Uint8Array(await response.arrayBuffer().catch(refuse));
+  if (!response.body) {
+    const bytes = new Uint8Array(await response.arrayBuffer().catch(refuse));
+    onPart?.(bytes);
+    return bytes;
+  }
   const parts: Uint8Array[] = [];
   let loaded = 0;
   const reader = response.body.getReader();
@@ -55,9 +87,15 @@ async function collect(
   for (let part = await next(); !part.done; part = await next()) {
     parts.push(part.value);
     loaded += part.value.length;
+    onPart?.(part.value);
     onProgress?.(total === undefined ? { loaded } : { loaded, total });
   }
-  const bytes = new Uint8Array(loaded);
+  return join(parts, loaded);
+}
+
+/** Pieces as one, of `length` bytes; what they leave is zero. */
+export function join(parts: readonly Uint8Array[], length: number): Uint8Array {
+  const bytes = new Uint8Array(length);
   let offset = 0;
   for (const part of parts) {
     bytes.set(part, offset);

@@ -3,6 +3,7 @@ import { fetchAhead, fetchFile, until } from './arrival.js';
 import type { DownloadOptions } from './download.js';
 import { CtsnError } from './error.js';
 import { ownDevice } from './gpu.js';
+import { ModelFile } from './model-file.js';
 import { ClothModel, type CpuClothModel } from './model.js';
 import type { WasmSource } from './module.js';
 import { readModel, relaxedSimd, startModule, type CpuSources, type Engine } from './raw.js';
@@ -27,6 +28,11 @@ export interface LoadOptions extends DownloadOptions, WasmSources {
    * is decided by a page's first call that gets any.
    */
   threads?: number | 'auto' | undefined;
+  /**
+   * Answers as soon as the coarse cloth is there, about half of the file, and lets the folds come in when the rest is.
+   * `model.complete` and the event `complete` tell when; a connection that is cut meanwhile leaves the coarse cloth.
+   */
+  progressive?: boolean | undefined;
 }
 
 /** How to load a model that may compute on the GPU. */
@@ -54,27 +60,47 @@ export async function loadModel(
   options: LoadOptions & { backend?: BackendChoice | undefined; device?: GPUDevice | undefined } = {},
 ): Promise<ClothModel> {
   checkSteps(options.polish);
-  const { signal, backend = 'cpu', polish } = options;
+  const { signal, backend = 'cpu', polish, progressive = false } = options;
   const device = options.device ?? undefined;
   if (backend === 'auto' || backend === 'webgpu') prepare(device, options.gpuWasm);
   const read = reader(source);
   const starting = startEngine(countThreads(options.threads), options);
-  const [engine, file] = await until(signal, Promise.all([starting, read(options)]));
-  let held: Uint8Array | undefined = file;
+  // It ends with the caller's signal, and with a model that is disposed of before it is complete.
+  const end = new AbortController();
+  const abort = (): void => end.abort(signal?.reason);
+  if (signal?.aborted) abort();
+  signal?.addEventListener('abort', abort);
+  const { file, coarse } = read({ ...options, signal: end.signal }, progressive);
+  let held: Uint8Array | undefined;
   const openSide: Opener = async (device) => {
     const { GpuSide } = await import('./gpu-side.js');
-    return GpuSide.open(held ?? (await read({ request: options.request })), device, options);
+    const { request, cache } = options;
+    return GpuSide.open(held ?? (await read({ request, cache }, false).file), device, options);
   };
-  const model = new ClothModel(readModel(engine, file, polish), engine, openSide);
+  const whole = file.then((bytes) => (held = bytes)).finally(() => signal?.removeEventListener('abort', abort));
+  whole.catch(() => undefined);
+  const [engine, first] = await until(signal, Promise.all([starting, Promise.race([whole, coarse])]));
+  const finest = held ? 'full' : 'coarse';
+  const model = new ClothModel(readModel(engine, held ?? first, polish), engine, openSide, finest);
+  const settle = async () => {
+    try {
+      await until(signal, model.setBackend(backend, device));
+    } finally {
+      // A model that changes to a GPU later asks again.
+      held = undefined;
+    }
+  };
+  if (finest === 'coarse') {
+    const predictor = whole.then((bytes) => readModel(engine, bytes, polish));
+    model.expect(predictor, settle, (reason) => end.abort(reason));
+    return model;
+  }
   try {
-    await until(signal, model.setBackend(backend, device));
+    await settle();
     return model;
   } catch (error) {
     model.dispose();
     throw error;
-  } finally {
-    // A model that changes to a GPU later asks again.
-    held = undefined;
   }
 }
 
@@ -126,15 +152,31 @@ function checkSteps(polish: number | undefined): void {
 /** A model file: its address, or its bytes. */
 export type ModelSource = string | URL | ArrayBuffer | Uint8Array;
 
+/** A model file [bytes] on its way, and what comes of it first: see `ModelFile`. */
+interface Coming {
+  file: Promise<Uint8Array>;
+  coarse: Promise<Uint8Array>;
+}
+
 /**
- * What reads the file [bytes], now and when the model changes to a GPU. Bytes that were given are copied: they are the
+ * What reads the file, now and when the model changes to a GPU. Bytes that were given are copied: they are the
  * caller's. Those of an address are not kept.
  */
-function reader(source: ModelSource): (options: DownloadOptions) => Promise<Uint8Array> {
-  if (typeof source === 'string' || source instanceof URL) return (options) => fetchFile(source, options);
-  if (!(source instanceof Uint8Array || source instanceof ArrayBuffer)) {
+function reader(source: ModelSource): (options: DownloadOptions, progressive: boolean) => Coming {
+  const address = typeof source === 'string' || source instanceof URL;
+  if (!address && !(source instanceof Uint8Array || source instanceof ArrayBuffer)) {
     throw new CtsnError('argument', `a model is an address, an ArrayBuffer or a Uint8Array, not ${typeof source}`);
   }
-  const bytes = new Uint8Array(source instanceof ArrayBuffer ? source.slice() : source);
-  return () => Promise.resolve(bytes);
+  const bytes = address ? undefined : new Uint8Array(source instanceof ArrayBuffer ? source.slice() : source);
+  return (options, progressive) => {
+    let tell!: (file: Uint8Array) => void;
+    const coarse = new Promise<Uint8Array>((resolve) => (tell = resolve));
+    const file = new ModelFile(progressive ? tell : undefined);
+    const read = async () => {
+      if (bytes) file.add(bytes);
+      else await fetchFile(source as string | URL, { ...options, onPart: (part) => file.add(part) });
+      return file.end();
+    };
+    return { file: read(), coarse };
+  };
 }

@@ -1,4 +1,4 @@
-import { Switch, type Backend, type BackendChoice, type Measured, type Opener } from './backend.js';
+import { deviceFaults, Switch, type Backend, type BackendChoice, type Measured, type Opener } from './backend.js';
 import type { ClothBuffers } from './buffers.js';
 import { makeDisposable, type MayBeUsed } from './disposable.js';
 import { CtsnError } from './error.js';
@@ -6,13 +6,13 @@ import type { Frame, PredictOptions, Surface } from './frame.js';
 import type { ModelInfo } from './info.js';
 import { fromCore } from './module.js';
 import { PoseWriter, restPose, type Pose } from './pose.js';
-import { fadeOf, type Fade } from './quality.js';
-import type { Engine, Predictor } from './raw.js';
+import { FadeIn, type Fade, type Quality } from './quality.js';
+import { readSurface, type Engine, type Predictor } from './raw.js';
 import type { GPUDevice } from './webgpu.js';
 
 /**
  * A garment's network, made by `loadModel`. Dispatches an event `backend` when it begins to compute elsewhere: on a
- * GPU, or on the CPU after a GPU failed.
+ * GPU, or on the CPU after a GPU failed; and `complete` when the folds of one that was loaded `progressive` are there.
  */
 export class ClothModel extends EventTarget {
   /** Names of the joints, in the order of the pose [J]. */
@@ -43,10 +43,14 @@ export class ClothModel extends EventTarget {
   readonly #writer: PoseWriter;
   #pose = new Float32Array();
   #info: ModelInfo | undefined;
+  readonly #fadeIn: FadeIn;
+  #complete: Promise<this> = Promise.resolve(this);
+  #abandon: ((reason: CtsnError) => void) | undefined;
 
-  /** @internal */
-  constructor(predictor: Predictor, { memory, threads }: Engine, openSide: Opener) {
+  /** @internal `finest`: the best quality that `predictor` has. */
+  constructor(predictor: Predictor, { memory, threads }: Engine, openSide: Opener, finest: Quality) {
     super();
+    this.#fadeIn = new FadeIn(finest);
     this.#predictor = predictor;
     this.#memory = memory;
     this.#switch = new Switch(
@@ -70,6 +74,24 @@ export class ClothModel extends EventTarget {
     return (this.#info ??= this.#alive().info() as ModelInfo);
   }
 
+  /** The best quality there is: `coarse` while the folds of a model that was loaded `progressive` are on their way. */
+  get finest(): Quality {
+    return this.#fadeIn.finest;
+  }
+
+  /** Resolves when all is there: at once, unless loaded `progressive`. Rejects as `loadModel` would, and stays coarse. */
+  get complete(): Promise<this> {
+    return this.#complete;
+  }
+
+  /** @internal The whole network is on its way; `settle` follows it, `abandon` ends it. */
+  expect(whole: Promise<Predictor>, settle: () => Promise<void>, abandon: (reason: CtsnError) => void): void {
+    this.#abandon = abandon;
+    this.#complete = whole.then((predictor) => this.#replace(predictor)).then(() => settle().then(() => this));
+    // Nobody has to ask.
+    this.#complete.catch(() => undefined);
+  }
+
   /** True after `dispose()`. */
   get disposed(): boolean {
     return this.#predictor === undefined;
@@ -80,9 +102,7 @@ export class ClothModel extends EventTarget {
     return this.#switch.running ? 'webgpu' : 'cpu';
   }
 
-  /**
-   * Why the GPU does not compute although it was asked for: no WebGPU, slower than the CPU, device lost, memory full.
-   */
+  /** Why the GPU does not compute although it was asked for: no WebGPU, slower than the CPU, lost, memory full. */
   get fallback(): string | undefined {
     return this.#switch.reason;
   }
@@ -136,7 +156,7 @@ export class ClothModel extends EventTarget {
   predictCloth(pose: Pose, options: PredictOptions & { output: 'gpu' }): Frame | ClothBuffers;
   predictCloth(pose: Pose, options?: PredictOptions & { output?: 'arrays' | undefined }): Frame | Promise<Frame>;
   predictCloth(pose: Pose, options?: PredictOptions): Frame | ClothBuffers | Promise<Frame> {
-    const fade = fadeOf(options);
+    const fade = this.#fadeIn.of(options);
     this.#alive();
     this.#writer.write(pose, this.#pose);
     const buffers = options?.backend === 'cpu' ? undefined : this.#buffers(options?.buffers);
@@ -151,9 +171,29 @@ export class ClothModel extends EventTarget {
 
   /** Frees the model's memory in the module and on the GPU, but no device. A second call does nothing. */
   dispose(): void {
+    this.#abandon?.(disposed('disposed of before it was complete'));
     this.#switch.dispose();
     this.#predictor?.free();
     this.#predictor = undefined;
+  }
+
+  /** Takes the whole network in the place of its coarse part. What was predicted last stays readable. */
+  #replace(predictor: Predictor): this {
+    const before = this.#predictor;
+    if (!before) {
+      predictor.free();
+      throw disposed('disposed of before it was complete');
+    }
+    this.#aside(restPose(this.joints.length), () => {
+      this.#predictor = predictor;
+      this.#switch.replace(predictor);
+      this.#view(predictor);
+    });
+    before.free();
+    this.#info = undefined;
+    this.#fadeIn.finest = 'full';
+    this.dispatchEvent(new Event('complete'));
+    return this;
   }
 
   /** Predicts, on the CPU, the pose that was written. */
@@ -230,7 +270,7 @@ export class ClothModel extends EventTarget {
 
   /** The predictor; views are made anew if the memory has grown, as it may whenever the module allocates. */
   #alive(): Predictor {
-    if (!this.#predictor) throw new CtsnError('disposed', 'the cloth model was used after dispose()');
+    if (!this.#predictor) throw disposed('used after dispose()');
     if (this.#pose.buffer !== this.#memory.buffer) this.#view(this.#predictor);
     return this.#predictor;
   }
@@ -244,7 +284,7 @@ export class ClothModel extends EventTarget {
   }
 }
 
-/** A model on the CPU, where every answer is there at once. After `setBackend` use what that answers. */
+/** A model on the CPU, whose answers are there at once. After `setBackend` use what that answers. */
 export interface CpuClothModel extends ClothModel {
   predictCloth(pose: Pose, options?: PredictOptions): Frame;
 }
@@ -254,12 +294,4 @@ export interface ClothModel extends MayBeUsed {}
 
 makeDisposable(ClothModel);
 
-/** Codes of failures of the GPU, after which the CPU can go on. */
-const deviceFaults = new Set(['no_adapter', 'no_device', 'limit', 'out_of_memory', 'refused', 'lost', 'missing']);
-
-function readSurface(predictor: Predictor): Surface | undefined {
-  const vertex = predictor.surface_vertex();
-  const uv = predictor.surface_uv();
-  const triangles = predictor.surface_triangles();
-  return vertex && uv && triangles ? { vertex, uv, triangles } : undefined;
-}
+const disposed = (how: string) => new CtsnError('disposed', `the cloth model was ${how}`);

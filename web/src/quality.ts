@@ -110,6 +110,28 @@ function toward(from: number, to: number, step: number): number {
   return from < to ? Math.min(from + step, to) : Math.max(from - step, to);
 }
 
+/** How a model shows its folds once they have come: over some predictions, so that nothing jumps. */
+export class FadeIn {
+  /** The best quality there is: `coarse` until the folds have come. */
+  finest: Quality;
+  #fade: Fade | undefined;
+
+  constructor(finest: Quality) {
+    this.finest = finest;
+    if (finest !== 'full') this.#fade = new Fade(finest);
+  }
+
+  /** What a call of `predictCloth` gets. */
+  of(options: Parameters<typeof fadeOf>[0]): Fade {
+    const asked = fadeOf(options);
+    const fade = this.#fade;
+    if (!fade || asked !== fixed.full) return asked;
+    fade.advance(this.finest);
+    if (fade.mesh === 1) this.#fade = undefined;
+    return fade;
+  }
+}
+
 const fixed = { full: new Fade('full'), coarse: new Fade('coarse'), skinned: new Fade('skinned') };
 
 /** @internal What a call of `predictCloth` asks for. */

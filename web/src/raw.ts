@@ -4,6 +4,7 @@
  * raw-gpu.ts.
  */
 import initialiseGlue, { Predictor, Streams, type Folds } from './glue/ctsn.js';
+import type { Surface } from './frame.js';
 import { fromCore, starter, type WasmSource } from './module.js';
 
 export { Streams };
@@ -59,4 +60,12 @@ export function readModel(engine: Engine, bytes: Uint8Array, polish?: number): P
   } catch (cause) {
     throw fromCore(cause);
   }
+}
+
+/** The mesh to draw, where the file has one beside the cloth mesh. */
+export function readSurface(predictor: Predictor): Surface | undefined {
+  const vertex = predictor.surface_vertex();
+  const uv = predictor.surface_uv();
+  const triangles = predictor.surface_triangles();
+  return vertex && uv && triangles ? { vertex, uv, triangles } : undefined;
 }

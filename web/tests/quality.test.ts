@@ -1,8 +1,8 @@
-// Changes of quality blend, and a wardrobe spends its budget where it shows.
+// Changes of quality blend, and a scheduler spends its budget where it shows.
 import { MeshBasicMaterial, PerspectiveCamera } from 'three';
 import { afterEach, expect, test, vi } from 'vitest';
 import type { ClothModel } from 'ctsn';
-import { Cloth, Wardrobe } from 'ctsn/three';
+import { Cloth, ClothScheduler } from 'ctsn/three';
 import { characterOf } from './character.js';
 import { difference } from '../../tests/browser/safetensors.js';
 import { loadGolden } from './golden.js';
@@ -37,7 +37,7 @@ test('a change of quality is spread over some updates, and nothing jumps', async
   model.dispose();
 });
 
-test('without a wardrobe, auto is full; an update before the first is shown does not blend', async () => {
+test('without a scheduler, auto is full; an update before the first is shown does not blend', async () => {
   const { model, poses } = await loadGolden('small');
   const character = characterOf(model.joints, poses[0]!);
   const [cloth, coarse] = [new Cloth(model, character, material), new Cloth(model, character, material)];
@@ -85,16 +85,16 @@ async function crowd() {
   return { model, cloths, camera: new PerspectiveCamera() };
 }
 
-test('a wardrobe keeps to its budget, and gives the near ones more', async () => {
+test('a scheduler keeps to its budget, and gives the near ones more', async () => {
   const { model, cloths, camera } = await crowd();
-  const wardrobe = new Wardrobe({ budget: 16 }).add(...cloths, ...cloths);
+  const scheduler = new ClothScheduler({ budget: 16 }).add(...cloths, ...cloths);
   const count = clocked(model);
-  for (let i = 0; i < 60; i++) wardrobe.update(camera);
+  for (let i = 0; i < 60; i++) scheduler.update(camera);
   Object.assign(count, { full: 0, coarse: 0, skinned: 0 });
   let [spent, most] = [0, 0];
   for (let i = 0; i < 80; i++) {
-    spent += wardrobe.update(camera).spent / 80;
-    most = Math.max(most, wardrobe.spent);
+    spent += scheduler.update(camera).spent / 80;
+    most = Math.max(most, scheduler.spent);
   }
   // Ten of 1 ms; 4 more for the nearest, 4 in every second frame for the next: 16 ms in the mean.
   expect(spent).toBeLessThanOrEqual(16.1);
@@ -102,23 +102,23 @@ test('a wardrobe keeps to its budget, and gives the near ones more', async () =>
   expect(most).toBeLessThanOrEqual(19);
   expect(count.full).toBeGreaterThan(100);
   expect(count.skinned).toBe(0);
-  wardrobe.budget = 2;
-  for (let i = 0; i < 40; i++) wardrobe.update(camera);
-  expect(wardrobe.spent).toBeLessThanOrEqual(2.1);
+  scheduler.budget = 2;
+  for (let i = 0; i < 40; i++) scheduler.update(camera);
+  expect(scheduler.spent).toBeLessThanOrEqual(2.1);
   model.dispose();
 });
 
 test('what is off screen is not predicted, until it is seen', async () => {
   const { model, cloths, camera } = await crowd();
   const behind = cloths[10]!;
-  const wardrobe = new Wardrobe().add(...cloths);
+  const scheduler = new ClothScheduler().add(...cloths);
   const before = [version(behind), version(cloths[0]!)];
-  wardrobe.update(camera).update(camera);
+  scheduler.update(camera).update(camera);
   expect([version(behind), version(cloths[0]!)]).toEqual([before[0], before[1]! + 2]);
   camera.rotation.y = Math.PI;
-  wardrobe.update(camera);
+  scheduler.update(camera);
   expect(version(behind)).toBe(before[0]! + 1);
-  wardrobe.remove(behind).update(camera);
+  scheduler.remove(behind).update(camera);
   expect(version(behind)).toBe(before[0]! + 1);
   model.dispose();
 });

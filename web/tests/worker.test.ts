@@ -1,7 +1,7 @@
 // A cloth whose model computes in a worker, with the worker's part done here: tests/browser has a real one.
 import { MeshBasicMaterial, PerspectiveCamera } from 'three';
 import { expect, test } from 'vitest';
-import { Cloth, Wardrobe } from 'ctsn/three';
+import { Cloth, ClothScheduler } from 'ctsn/three';
 import { WorkerClothModel } from 'ctsn/worker';
 import { difference } from '../../tests/browser/safetensors.js';
 import { characterOf } from './character.js';
@@ -67,17 +67,17 @@ test('what a worker refuses, the next update throws; a pose that cannot be one i
   expect(() => far.predictCloth([1, 2, 3])).toThrow(/numbers/);
 });
 
-test('a wardrobe takes cloths of a worker, from before their first answer on', async () => {
+test('a scheduler takes cloths of a worker, from before their first answer on', async () => {
   const { far, model, poses, told } = await remote();
   const cloth = new Cloth(far, characterOf(far.joints, poses[0]!), new MeshBasicMaterial());
   const camera = new PerspectiveCamera();
   camera.position.z = 4;
-  const wardrobe = new Wardrobe().add(cloth);
-  expect(wardrobe.update(camera).tally.full).toBe(1);
+  const scheduler = new ClothScheduler().add(cloth);
+  expect(scheduler.update(camera).tally.full).toBe(1);
   await cloth.settled();
   far.dispose();
   far.dispose();
   expect(told).toEqual([{ call: 0, type: 'dispose', model: 1 }]);
-  expect(() => wardrobe.update(camera)).toThrow(expect.objectContaining({ code: 'disposed' }) as Error);
+  expect(() => scheduler.update(camera)).toThrow(expect.objectContaining({ code: 'disposed' }) as Error);
   model.dispose();
 });

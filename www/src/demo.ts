@@ -1,154 +1,289 @@
-import { Material, MeshBasicMaterial, Vector3, type BufferAttribute } from 'three';
-import type { BackendChoice, ClothModel, Quality } from 'ctsn';
-import { Cloth } from 'ctsn/three';
-import { RATE, type Character } from './character.js';
-import { createFabric } from './fabric.js';
-import type { Capture } from './hook.js';
-import { Meter } from './meter.js';
-import type { Panel } from './panel.js';
-import type { Stage } from './stage.js';
+import type { BackendChoice, Progress, Quality } from 'ctsn';
+import type { Figure, GarmentEntry } from './cast/catalogue.js';
+import { combine } from './cast/catalogue.js';
+import { Rail } from './cast/rail.js';
+import { Rivals } from './compare/rivals.js';
+import { Cost } from './cost.js';
+import { element } from './dom.js';
+import { tell } from './failure.js';
+import { FabricPanel } from './fabric/panel.js';
+import { Character, RATE } from './figure/character.js';
+import { Dressed } from './figure/dressed.js';
+import { fetchBytes } from './figure/fetch.js';
+import { Maps } from './maps/maps.js';
+import { Transport } from './motion/transport.js';
+import { Poser } from './pose/poser.js';
+import { readPose, writePose } from './pose/record.js';
+import type { Scene } from './share/address.js';
+import type { Stage } from './stage/stage.js';
 
 /** Predictions over which a change of quality is spread. */
 const BLEND = 12;
+/** Metres by which a garment is drawn before the one under it. */
+const LAYER = 0.015;
+/** Bones that may touch the floor. */
+const LOW = /foot|toe|paw|hand/i;
 
-/** The running page: moves the character, predicts the cloth and draws both, once per animation frame. */
-export class RunningDemo {
-  readonly meter = new Meter();
+/** The running page: moves the figure, predicts what it wears and draws both, once per animation frame. */
+export class TryOn {
+  readonly stage: Stage;
+  readonly cost = new Cost();
+  readonly transport = new Transport();
+  /** Called when what an address would keep has changed. */
+  onScene: () => void = () => {};
+  quality: Quality = 'full';
   /** Predictions since the page was opened. */
   predictions = 0;
-  readonly #stage: Stage;
-  readonly #character: Character;
-  readonly #panel: Panel;
-  readonly #cloth: Cloth;
-  readonly #fabric: Material;
+  dressed!: Dressed;
+  readonly #cast: Figure[];
+  readonly #rail = new Rail();
+  readonly #fabric = new FabricPanel();
+  readonly #poser: Poser;
+  readonly #maps = new Maps();
+  readonly #rivals: Rivals;
+  #own = false;
   #changed = true;
-  /** Whether a prediction came back from the GPU that is not drawn yet. */
+  /** Until when a change of garments is seen, in milliseconds. */
+  #fading = 0;
   #arrived = false;
-  readonly #mesh = new MeshBasicMaterial({ wireframe: true, color: '#2d4f6b' });
+  #turn = 0;
 
-  constructor(stage: Stage, character: Character, model: ClothModel, panel: Panel) {
-    this.#stage = stage;
-    this.#character = character;
-    this.#panel = panel;
-    character.show(panel.wishes.clip, 0);
-    this.#cloth = new Cloth(model, character.scene, this.#mesh);
-    this.#fabric = createFabric(this.#cloth.geometry);
-    this.#cloth.castShadow = this.#cloth.receiveShadow = true;
-    stage.scene.add(character.scene, this.#cloth);
-    panel.onScrub = (seconds) => {
-      character.show(panel.wishes.clip, seconds);
-      this.#changed = true;
-    };
-    panel.onChange = () => {
-      this.#changed = true;
-      this.meter.reset();
-      if (panel.wishes.clip !== character.clip) character.show(panel.wishes.clip, 0);
-    };
-    panel.onBackend = (choice) => void this.compute(choice);
-    model.addEventListener('backend', () => this.#tell());
+  constructor(stage: Stage, cast: Figure[]) {
+    this.stage = stage;
+    this.#cast = cast;
+    this.#poser = new Poser(stage);
+    this.#rivals = new Rivals(stage);
+    stage.scene.add(this.#rivals);
+    this.#listen();
+  }
+
+  get figures(): readonly Figure[] {
+    return this.#cast;
+  }
+
+  /** Shows a figure in these garments; what was shown stays until it is there. Overtaken calls end unseen. */
+  async choose(entry: Figure, wear = entry.garments.slice(0, 1), onProgress?: (file: string, progress: Progress) => void): Promise<Dressed> {
+    const turn = ++this.#turn;
+    const bytes = await fetchBytes(entry, (progress) => onProgress?.('figure', progress));
+    const dressed = new Dressed(entry, await Character.parse(bytes, entry.name));
+    const { character } = dressed;
+    dressed.backend = this.cost.backend;
+    if (character.clips[0]) character.show(character.clips[0], 0);
+    try {
+      await dressed.wear(wear, (progress) => onProgress?.('model', progress));
+    } catch (error) {
+      dressed.dispose();
+      throw error;
+    }
+    if (turn !== this.#turn) {
+      dressed.dispose();
+      return this.dressed;
+    }
+    this.#replace(dressed);
+    return dressed;
+  }
+
+  /** Puts these garments on. */
+  async wear(entries: readonly GarmentEntry[]): Promise<void> {
+    const { dressed } = this;
+    if (!(await dressed.wear(entries))) return;
+    this.#fading = performance.now() + 600;
     this.#tell();
   }
 
   /** Runs until the page closes. While nothing moves, nothing is drawn. */
   run(): void {
     let last: number | undefined;
-    this.#stage.renderer.setAnimationLoop((now: number) => {
+    this.stage.renderer.setAnimationLoop((now: number) => {
       // A page in the background gets no animation frames; when it is back, the motion goes on where it stood.
       const seconds = Math.min((now - (last ?? now)) / 1000, 0.1);
       last = now;
-      const { playing } = this.#panel.wishes;
-      if (playing) this.#character.advance(seconds);
-      if (this.#stage.look() || playing || this.#changed) this.draw();
+      const playing = this.transport.playing && !this.#own;
+      if (playing) this.dressed.character.advance(seconds * this.transport.speed);
+      const moved = this.stage.turn();
+      if (moved) this.onScene();
+      if (moved || playing || this.#changed || performance.now() < this.#fading) this.draw();
       else if (this.#arrived) this.#render();
     });
   }
 
-  /** Predicts the cloth for the pose of the character, and draws both. */
+  /** Predicts the cloth for the pose of the figure, and draws both. */
   draw(): void {
-    const { wishes } = this.#panel;
+    const { dressed } = this;
+    const { clip, time, duration } = dressed.character;
+    const start = performance.now();
     this.#changed = false;
-    this.#predict();
+    // At rest the next picture is the last for a while: it shows what was chosen.
+    dressed.update(this.quality, this.transport.playing ? BLEND : 0);
     this.predictions++;
-    this.#cloth.material = wishes.wireframe ? this.#mesh : this.#fabric;
-    this.#stage.follow(this.#cloth.bones[this.#cloth.model.rootIndex]!);
+    const end = () => this.cost.add(performance.now() - start);
+    if (dressed.models.some(({ backend }) => backend === 'webgpu')) {
+      void dressed.wardrobe.settled().then(() => {
+        end();
+        this.#arrived = true;
+      });
+    } else end();
+    this.#rivals.update(dressed);
+    this.#maps.update(dressed, this.transport.playing && !this.#own);
+    this.stage.follow(dressed.hip, dressed.head);
+    const { distance, camera } = this.stage;
+    dressed.worn.forEach(({ material }, layer) => material.raise(LAYER * layer, distance, camera.near));
     this.#render();
-    const { time, duration } = this.#character;
-    this.#panel.show({ milliseconds: this.meter.median, time, duration });
-  }
-
-  /** Computes the cloth elsewhere from now on. */
-  async compute(choice: BackendChoice): Promise<void> {
-    this.#panel.showBackend('trying…', '');
-    await this.#cloth.model.setBackend(choice);
-    this.#tell();
+    this.transport.show(this.#own ? '' : clip, time, duration);
+    this.cost.show(dressed);
   }
 
   /** Settles when the prediction asked for last is drawn. */
   async settled(): Promise<void> {
-    await this.#cloth.settled();
+    await this.dressed.wardrobe.settled();
     this.#render();
+  }
+
+  /** Stops the page at a frame of a clip. */
+  stop(clip: string, frame: number, quality: Quality = this.quality): void {
+    this.transport.play(false);
+    this.quality = quality;
+    this.#show(clip, frame / RATE);
+    this.draw();
+  }
+
+  /** Shows what an address says, as far as it does. */
+  apply({ pose, view }: Scene): void {
+    if (view) this.stage.look(view);
+    if (!pose) return;
+    if (!('own' in pose)) return this.stop(pose.clip, pose.frame);
+    this.transport.play(false);
+    readPose(pose.own, this.dressed.character.bones, this.dressed.hip);
+    this.#pose();
+  }
+
+  /** What an address keeps of the page. */
+  get scene(): Scene {
+    const { entry, worn, looks, character, hip } = this.dressed;
+    const wear = worn.map(({ entry }) => ({ garment: entry.id, look: looks.get(entry)! }));
+    const scene: Scene = { figure: entry.id, wear, view: this.stage.view };
+    if (this.#own) scene.pose = { own: writePose(character.bones, hip) };
+    else if (!this.transport.playing && character.clip) scene.pose = { clip: character.clip, frame: RATE * character.time };
+    return scene;
+  }
+
+  /** Takes another fabric for a garment. */
+  look(garment: GarmentEntry, look: Parameters<Dressed['dress']>[1]): void {
+    this.dressed.dress(garment, look);
+    this.#tell();
+  }
+
+  /** A figure or a garment of one's own, the figures first. */
+  async bring(files: readonly File[]): Promise<void> {
+    const kind = (file: File) => /\.(glb|safetensors)$/i.exec(file.name)?.[1]?.toLowerCase();
+    const strange = files.find((file) => !kind(file));
+    if (strange) throw new Error(`${strange.name}: a character (.glb) or a model of a garment (.safetensors) is wanted`);
+    for (const file of files.filter((file) => kind(file) === 'glb')) {
+      const name = file.name.replace(/\.glb$/i, '');
+      const entry = { id: file.name, name, file: URL.createObjectURL(file), bytes: file.size, garments: [] };
+      await this.choose(entry);
+      this.#cast.push(entry);
+      this.#tell();
+    }
+    for (const file of files.filter((file) => kind(file) === 'safetensors')) await this.#bringGarment(file);
+  }
+
+  async #bringGarment(file: File): Promise<void> {
+    const { dressed } = this;
+    const entry: GarmentEntry = {
+      id: file.name,
+      name: file.name.replace(/\.safetensors$/i, ''),
+      place: 'whole',
+      fabric: 'jersey',
+      colour: '#8a6d8f',
+      print: 'none',
+      file: URL.createObjectURL(file),
+      bytes: file.size,
+    };
+    dressed.add(entry);
+    try {
+      await this.wear([entry]);
+    } catch (error) {
+      dressed.remove(entry);
+      throw error;
+    }
   }
 
   #render(): void {
     this.#arrived = false;
-    this.#stage.render();
+    this.#rivals.render(this.stage, this.dressed);
+    this.#poser.update();
   }
 
-  /** Times the prediction: on the GPU until it is back. */
-  #predict(): void {
-    const start = performance.now();
-    // At rest the next picture is the last for a while: it shows what was chosen.
-    this.#cloth.blend = this.#panel.wishes.playing ? BLEND : 0;
-    this.#cloth.quality = this.#panel.wishes.quality;
-    const late = this.#cloth.update().backend === 'webgpu';
-    const end = () => this.meter.add(performance.now() - start);
-    if (!late) return end();
-    void this.#cloth.settled().then(() => {
-      end();
-      this.#arrived = true;
-    });
+  #show(clip: string, seconds: number): void {
+    this.#own = false;
+    this.dressed.character.show(clip, seconds);
+    this.#changed = true;
+    this.onScene();
+  }
+
+  /** The figure is in a pose of one's own from now on. */
+  #pose(): void {
+    this.#own = this.#changed = true;
+    this.onScene();
+  }
+
+  #replace(dressed: Dressed): void {
+    const before = this.dressed as Dressed | undefined;
+    this.stage.scene.add(dressed.character.scene, dressed.wardrobe);
+    this.dressed = dressed;
+    this.#own = false;
+    before?.dispose();
+    const { bones, clips } = dressed.character;
+    dressed.character.scene.updateMatrixWorld(true);
+    this.stage.welcome(dressed.character.scene, [dressed.hip, ...bones.filter(({ name }) => LOW.test(name))]);
+    this.#poser.hold(bones, dressed.hip);
+    this.transport.offer(clips);
+    dressed.onBackend = () => this.#tell();
+    this.#tell();
   }
 
   #tell(): void {
-    const { backend, adapter, fallback, measured } = this.#cloth.model;
-    this.meter.reset();
+    const { entry, worn, looks } = this.dressed;
     this.#changed = true;
-    const figures = measured
-      ? ` Measured: ${measured.webgpu.toFixed(1)} ms, the processor ${measured.cpu.toFixed(1)} ms.`
-      : '';
-    if (backend === 'cpu') this.#panel.showBackend('Processor', fallback ? `Not WebGPU: ${fallback}.` : '');
-    else this.#panel.showBackend(`WebGPU, ${adapter}`, `Read back for WebGL: the cloth shows a frame late.${figures}`);
+    this.#rail.show(this.#cast, entry, worn.map(({ entry }) => entry));
+    this.#fabric.show(worn.map(({ entry }) => ({ entry, look: looks.get(entry)! })));
+    this.cost.tell(this.dressed);
+    const names = worn.map(({ entry }) => entry.name.toLowerCase()).join(' and ') || 'nothing of ours';
+    element('stage').setAttribute('aria-label', `${entry.name}, wearing ${names}. Drag to turn, scroll to come closer.`);
+    this.onScene();
   }
 
-  /** Stops the page at a frame of a clip. */
-  stop(clip: string, frame: number, quality: Quality): void {
-    this.#panel.play(false);
-    this.#panel.choose(quality);
-    this.#character.show(clip, frame / RATE);
-    this.#panel.select(clip);
-    this.draw();
-  }
-
-  /** What the page shows now. */
-  capture(): Capture {
-    const { bones, geometry, matrixWorld, model } = this.#cloth;
-    const position = geometry.getAttribute('position') as BufferAttribute;
-    const normal = geometry.getAttribute('normal') as BufferAttribute;
-    return {
-      clip: this.#character.clip,
-      frame: this.#character.time * RATE,
-      quality: this.#panel.wishes.quality,
-      joints: [...model.joints],
-      pose: bones.flatMap((bone) => bone.matrixWorld.elements),
-      positions: collect(position, (at) => at.applyMatrix4(matrixWorld)),
-      normals: collect(normal, (at) => at.transformDirection(matrixWorld)),
-      vertex: model.surface ? [...model.surface.vertex] : Array.from({ length: model.vertexCount }, (_, i) => i),
+  #listen(): void {
+    const attempt = (work: Promise<unknown>) => void work.catch(tell);
+    this.#rail.onFigure = (figure) => attempt(this.choose(figure));
+    this.#rail.onGarment = (garment) => attempt(this.wear(combine(garment, this.dressed.worn.map(({ entry }) => entry))));
+    // Whether it comes is told when it is worn.
+    this.#rail.onNear = ({ id }) => void this.dressed.wardrobe.prefetch(id).catch(() => undefined);
+    this.#fabric.onLook = (garment, look) => this.look(garment, look);
+    this.#fabric.onPicture = (file) => attempt(this.#print(file));
+    this.transport.onScrub = (seconds) => this.#show(this.dressed.character.clip, seconds);
+    this.transport.onClip = (clip) => this.#show(clip, 0);
+    this.transport.onPlay = () => {
+      if (this.transport.playing && this.#own) this.#show(this.dressed.character.clip, this.dressed.character.time);
+      this.onScene();
     };
+    this.#poser.onStart = () => this.transport.play(false);
+    this.#poser.onMove = () => this.#pose();
+    element<HTMLInputElement>('posing').addEventListener('change', ({ target }) => {
+      this.#poser.shown = (target as HTMLInputElement).checked;
+      this.#changed = true;
+    });
+    this.#maps.onChange = this.#rivals.onChange = () => (this.#changed = true);
+    this.cost.onBackend = (choice: BackendChoice) => attempt(this.dressed.compute(choice).then(() => this.#tell()));
   }
-}
 
-function collect(attribute: BufferAttribute, toWorld: (at: Vector3) => Vector3): number[] {
-  const at = new Vector3();
-  const one = (i: number) => toWorld(at.fromBufferAttribute(attribute, i));
-  return Array.from({ length: attribute.count }, (_, i) => one(i).toArray()).flat();
+  async #print(file: File): Promise<void> {
+    const garment = this.#fabric.garment;
+    if (!garment) return;
+    this.dressed.picture = await createImageBitmap(file).catch(() => {
+      throw new Error(`${file.name} is no picture that this browser can read`);
+    });
+    this.look(garment, { ...this.dressed.looks.get(garment)!, print: 'picture' });
+  }
 }

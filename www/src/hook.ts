@@ -2,6 +2,9 @@ import type { Backend, Quality } from 'ctsn';
 
 /** What the page shows: the pose, with which a test can compute the cloth elsewhere, and the cloth computed here. */
 export interface Capture {
+  figure: string;
+  /** The garment that is captured: the first that is worn. */
+  garment: string;
   clip: string;
   /** Frame of the clip, 30 a second. */
   frame: number;
@@ -18,15 +21,16 @@ export interface Capture {
 }
 
 /**
- * `window.ctsnDemo`: the page's handle for tests and for the curious. In the address, `?pose=CLIP:FRAME` stops the page
- * at a frame of a clip (30 a second), `?quality=full|coarse|skinned` chooses the source of the cloth, and
- * `?backend=cpu|webgpu|auto` where it is computed.
+ * `window.ctsnDemo`: the page's handle for tests and for the curious. In the address, `?figure=`, `?wear=`, `?pose=` and
+ * `?view=` say what is shown (share/address.ts), and `?backend=cpu|webgpu|auto` where it is computed.
  */
 export interface Demo {
   /** What went wrong, if anything did. */
   error: string | undefined;
   /** True once the page is set up. */
   ready: boolean;
+  /** Figures and their garments. */
+  cast: Record<string, string[]>;
   /** Clips and their lengths in frames. */
   clips: Record<string, number>;
   /** Predictions so far, and the median of recent ones in milliseconds. */
@@ -36,6 +40,14 @@ export interface Demo {
   show(clip: string, frame: number, quality?: Quality): Promise<Capture>;
   /** What the page shows now. */
   capture(): Promise<Capture>;
+  /** Puts these garments on the figure, and settles when nothing else is seen. */
+  wear(garments: string[]): Promise<void>;
+  /** Another figure, in what it comes in. */
+  choose(figure: string): Promise<void>;
+  /** A picture of so many pixels without a background, webp as a data address. */
+  picture(width: number, height: number): Promise<string>;
+  /** Geometries and textures that the renderer keeps on the GPU. */
+  memory(): { geometries: number; textures: number };
   /** Where the cloth is predicted, and why not on the GPU. */
   backend: Backend;
   fallback: string | undefined;
@@ -45,14 +57,4 @@ declare global {
   interface Window {
     ctsnDemo?: Partial<Demo>;
   }
-}
-
-/** The clip and the frame at which the address asks the page to stop, if it does. */
-export function readAddress(address: URL): { clip: string; frame: number } | undefined {
-  const pose = address.searchParams.get('pose');
-  if (!pose) return undefined;
-  const colon = pose.lastIndexOf(':');
-  const frame = Number(pose.slice(colon + 1));
-  if (colon > 0 && Number.isFinite(frame)) return { clip: pose.slice(0, colon), frame };
-  throw new Error(`?pose=${pose}: CLIP:FRAME wanted, for example ?pose=walk:12`);
 }

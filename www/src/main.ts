@@ -1,11 +1,16 @@
-import { loadModel, type BackendChoice, type ClothModel, type Progress, type Quality } from 'ctsn';
-import { FileLoader } from 'three';
-import { Character, RATE } from './character.js';
-import { RunningDemo } from './demo.js';
-import { run } from './failure.js';
-import { readAddress, type Demo } from './hook.js';
-import { element, formatBytes, Panel } from './panel.js';
-import { Stage } from './stage.js';
+import type { BackendChoice, Progress } from 'ctsn';
+import cast from 'virtual:cast';
+import { capture } from './capture.js';
+import { TryOn } from './demo.js';
+import { element, formatBytes } from './dom.js';
+import { run, tell } from './failure.js';
+import { RATE } from './figure/character.js';
+import type { Demo } from './hook.js';
+import { layOut } from './layout.js';
+import { readAddress, writeAddress, type Scene } from './share/address.js';
+import { acceptFiles } from './share/drop.js';
+import { save, takePicture } from './share/picture.js';
+import { Stage } from './stage/stage.js';
 
 const hook: Partial<Demo> = (window.ctsnDemo = { ready: false });
 
@@ -21,59 +26,126 @@ function showProgress(file: string, progress: Progress): void {
   }
   const bar = element<HTMLProgressElement>('progress');
   if (Number.isFinite(total)) Object.assign(bar, { max: total, value: loaded });
-  element('progress-text').textContent = `Loading the character and its T-shirt: ${formatBytes(loaded)}`;
+  element('progress-text').textContent = `Loading the figure and its clothes: ${formatBytes(loaded)}`;
 }
 
-async function load(): Promise<[Character, ClothModel, number]> {
-  const body = new FileLoader().setResponseType('arraybuffer');
-  const base = import.meta.env.BASE_URL;
-  const [glb, model] = await Promise.all([
-    body.loadAsync(`${base}andy.glb`, ({ loaded, total, lengthComputable }) => {
-      showProgress('character', lengthComputable ? { loaded, total } : { loaded });
-    }),
-    loadModel(`${base}tshirt.safetensors`, {
-      backend: 'cpu' as BackendChoice,
-      onProgress: (progress) => showProgress('model', progress),
-    }),
-  ]);
-  return [await Character.parse(glb as ArrayBuffer), model, received.get('model')?.loaded ?? 0];
+/** Shows the figure of the address in what it says. */
+async function open(page: TryOn, scene: Scene): Promise<void> {
+  const figure = scene.figure === undefined ? cast[0] : cast.find(({ id }) => id === scene.figure);
+  if (!figure) throw new Error(`there is no figure "${scene.figure}"; there are ${cast.map(({ id }) => id).join(', ') || 'none'}`);
+  const wear = scene.wear?.map(({ garment, look }) => {
+    const entry = figure.garments.find(({ id }) => id === garment);
+    if (!entry) throw new Error(`${figure.name} has no garment "${garment}"; there are ${figure.garments.map(({ id }) => id).join(', ')}`);
+    return { entry, look };
+  });
+  await page.choose(figure, wear?.map(({ entry }) => entry), showProgress);
+  for (const { entry, look } of wear ?? []) if (look) page.look(entry, look);
+  page.apply(scene);
+}
+
+/** Keeps the address of the page that of what it shows; it changes a while after the last change. */
+function keepAddress(page: TryOn, query: URLSearchParams): void {
+  let waiting = 0;
+  page.onScene = () => {
+    clearTimeout(waiting);
+    waiting = window.setTimeout(() => {
+      const kept = ['backend'].flatMap((name) => (query.has(name) ? [`${name}=${query.get(name)}`] : []));
+      history.replaceState(null, '', `?${[writeAddress(page.scene), ...kept].join('&')}`);
+    }, 300);
+  };
+}
+
+function listen(page: TryOn): void {
+  const status = (text: string) => (element('status').textContent = text);
+  element('save').addEventListener('click', () => {
+    page.draw();
+    const canvas = page.stage.renderer.domElement;
+    const name = `ctsn-${page.dressed.entry.id}.png`;
+    takePicture(canvas, { width: canvas.width, height: canvas.height, type: 'image/png', backdrop: true }).then((blob) => save(blob, name), tell);
+    status(`Saved as ${name}`);
+  });
+  element('share').addEventListener('click', () => {
+    const address = new URL(`?${writeAddress(page.scene)}`, location.href).href;
+    history.replaceState(null, '', address);
+    navigator.clipboard.writeText(address).then(
+      () => status('The link is on the clipboard'),
+      () => status('The link is in the address bar'),
+    );
+  });
+  acceptFiles((files) => void page.bring(files).catch(tell));
 }
 
 async function start(): Promise<void> {
-  const stage = new Stage(element<HTMLCanvasElement>('stage'));
-  const [character, model, bytes] = await load();
-  const panel = new Panel(character.clips, model.vertexCount, bytes);
-  const demo = new RunningDemo(stage, character, model, panel);
-  element('loading').hidden = true;
-
   const address = new URL(location.href);
-  const quality = (address.searchParams.get('quality') ?? 'full') as Quality;
-  const wanted = readAddress(address);
-  if (wanted) demo.stop(wanted.clip, wanted.frame, quality);
-  else panel.choose(quality);
-  demo.run();
+  const scene = readAddress(address);
+  const stage = new Stage(element<HTMLCanvasElement>('stage'));
+  const arrange = layOut(stage);
+  const page = new TryOn(stage, [...cast]);
+  page.transport.play(!matchMedia('(prefers-reduced-motion: reduce)').matches);
   const backend = address.searchParams.get('backend');
-  if (backend) panel.compute(backend as BackendChoice);
+  if (backend) page.cost.backend = backend as BackendChoice;
+  await open(page, scene);
+  element('loading').hidden = true;
+  for (const part of document.querySelectorAll<HTMLElement>('[data-waits]')) part.hidden = false;
+  keepAddress(page, address.searchParams);
+  listen(page);
+  page.run();
+  offer(page, arrange);
+}
 
-  const clips = Object.fromEntries(character.clips.map((clip) => [clip, Math.floor(character.length(clip) * RATE)]));
-  Object.defineProperties(hook, {
-    predictions: { get: () => demo.predictions },
-    milliseconds: { get: () => demo.meter.median },
-    backend: { get: () => model.backend },
-    fallback: { get: () => model.fallback },
-  });
-  const capture = async () => {
-    await demo.settled();
-    return demo.capture();
+/** The page's handle. */
+function offer(page: TryOn, arrange: () => void): void {
+  const captured = async () => {
+    // What was changed a moment ago waits for the next animation frame.
+    page.draw();
+    await page.settled();
+    return capture(page);
   };
-  Object.assign(hook, {
-    clips,
-    ready: true,
-    show(clip: string, frame: number, choice: Quality = 'full') {
-      demo.stop(clip, frame, choice);
-      return capture();
+  Object.defineProperties(hook, {
+    predictions: { get: () => page.predictions },
+    milliseconds: { get: () => page.cost.milliseconds },
+    backend: { get: () => page.dressed.models[0]?.backend },
+    fallback: { get: () => page.dressed.models[0]?.fallback },
+    clips: {
+      get: () => {
+        const { character } = page.dressed;
+        return Object.fromEntries(character.clips.map((clip) => [clip, Math.floor(character.length(clip) * RATE)]));
+      },
     },
-    capture,
+  });
+  Object.assign(hook, {
+    cast: Object.fromEntries(page.figures.map(({ id, garments }) => [id, garments.map(({ id }) => id)])),
+    show(clip, frame, quality = 'full') {
+      page.stop(clip, frame, quality);
+      return captured();
+    },
+    capture: captured,
+    async wear(garments) {
+      await page.wear(page.dressed.entry.garments.filter(({ id }) => garments.includes(id)));
+      while (page.dressed.wardrobe.children.length > garments.length) {
+        await new Promise((resolve) => setTimeout(resolve, 50));
+        page.draw();
+      }
+    },
+    async choose(figure) {
+      await page.choose(page.figures.find(({ id }) => id === figure)!);
+    },
+    async picture(width, height) {
+      // The controls are not in it.
+      page.stage.frame({ left: 0, right: 0, top: 0, bottom: 0 });
+      page.draw();
+      const blob = await takePicture(page.stage.renderer.domElement, { width, height, type: 'image/webp', backdrop: false });
+      arrange();
+      return new Promise((resolve) => {
+        const reader = Object.assign(new FileReader(), { onload: () => resolve(reader.result as string) });
+        reader.readAsDataURL(blob);
+      });
+    },
+    memory() {
+      const { geometries, textures } = page.stage.renderer.info.memory;
+      return { geometries, textures };
+    },
+    ready: true,
   } satisfies Partial<Demo>);
 }
 

@@ -138,22 +138,36 @@ operations! { $
         output: W,
     }
 
-    /// One step in which each edge pulls its ends towards the length it was cut to. network.md §5.
-    Polish<R, W, I> {
+    /// How far each vertex is pulled by its edges towards the lengths they were cut to. network.md §5.
+    Pull<R, W, I> {
         /// Where the neighbours of each vertex start [n + 1].
         offsets: I,
         /// Neighbours [edges].
         neighbours: I,
         /// Squared length that each edge was cut to, square metres [edges].
         squares: R,
+        /// x [n, 3].
+        positions: R,
+        /// [n, 3].
+        pulls: W,
+    }
+
+    /// One step in which the cloth follows its edges' pulls, each vertex with its neighbours. network.md §5.
+    Polish<R, W, I> {
+        /// Where the neighbours of each vertex start [n + 1].
+        offsets: I,
+        /// Neighbours [edges].
+        neighbours: I,
         /// What the step counts in this prediction, 0 to 1 [1].
         share: R,
         /// Whether it is the first step, which has no momentum.
         first: bool,
-        /// x [n, 3].
-        current: R,
-        /// Before the last step [n, 3]; after this one.
-        other: W,
+        /// [n, 3].
+        pulls: R,
+        /// How far the last step went, and then this one [n, 3].
+        moves: W,
+        /// x [n, 3]; read and moved.
+        positions: W,
     }
 
     /// Area-weighted unit vertex normals; +Y where a vertex has no area around it.
@@ -164,6 +178,20 @@ operations! { $
         triangles: I,
         /// [n, 3].
         normals: W,
+    }
+
+    /// Each vertex of a drawn mesh goes where its triangle of the cloth takes it. network.md §5.
+    Ride<R, W, I> {
+        /// Cloth vertices under each [w, 3].
+        corners: I,
+        /// Barycentric coordinates, then the offset along the normal, metres [w, 4].
+        coordinates: R,
+        /// Cloth [n, 3].
+        positions: R,
+        /// Its unit normals [n, 3].
+        normals: R,
+        /// [w, 3].
+        riders: W,
     }
 
     /// Each drawn vertex takes position and normal of its cloth vertex.
@@ -286,9 +314,13 @@ impl Operation<usize, usize, usize> {
                 // The gate: difference, three dot products, blend; LayerNorm: mean, variance, scale and shift.
                 attention + it.output * (1 + 6 + 2 + 7)
             }
-            // An edge: difference, square, pull, sum; a vertex: its mean and momentum.
-            Self::Polish(it) => 18 * it.neighbours + 4 * it.current,
+            // An edge: difference, square, pull, sum.
+            Self::Pull(it) => 18 * it.neighbours + it.positions,
+            // A sum over the neighbours; a vertex: two shares, momentum, the move.
+            Self::Polish(it) => 3 * it.neighbours + 6 * it.positions,
             Self::Normals(it) => 18 * it.triangles + 3 * it.positions,
+            // Two sums of three vectors, the length of one, and the offset.
+            Self::Ride(it) => 15 * it.riders,
             Self::Surface(_) => 0,
             Self::Bury(it) => buriable(it.areas).len() * it.areas * 18,
             // A walk, and six triangles around its end.

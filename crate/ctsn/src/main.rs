@@ -4,12 +4,13 @@
 
 mod commands;
 mod onnx;
+mod packing;
 mod pages;
 mod pictures;
 
 use clap::{Parser, Subcommand};
 use commands::{
-    bake, bench, character, evaluate, export, garment, inspect, motion, polish, predict, render, sheet, simulate,
+    bake, bench, character, evaluate, export, garment, inspect, motion, pack, polish, predict, render, sheet, simulate,
     split, study, train,
 };
 
@@ -32,6 +33,7 @@ use commands::{
 ///   ctsn study data -o study                          plain skinning, older methods, ablations and sizes beside it
 ///   ctsn render model.safetensors character.glb --clip NAME --frame N -o picture.png
 ///   ctsn polish model.safetensors data -o model.safetensors    its folds, crisper or calmer
+///   ctsn pack model.safetensors character.glb -o small.safetensors   the same to download, a third of the bytes
 ///   ctsn export model.safetensors -o model.onnx       the network for Unity, Unreal and other runtimes
 #[derive(Parser)]
 #[command(name = "ctsn", version, verbatim_doc_comment)]
@@ -55,6 +57,7 @@ enum Command {
     Sheet(sheet::Arguments),
     Inspect(inspect::Arguments),
     Polish(polish::Arguments),
+    Pack(pack::Arguments),
     Predict(predict::Arguments),
     Export(export::Arguments),
     Bench(bench::Arguments),
@@ -88,6 +91,7 @@ fn main() -> std::process::ExitCode {
         Command::Sheet(arguments) => sheet::run(&arguments),
         Command::Inspect(arguments) => inspect::run(&arguments),
         Command::Polish(arguments) => polish::run(&arguments),
+        Command::Pack(arguments) => pack::run(&arguments),
         Command::Predict(arguments) => predict::run(&arguments),
         Command::Export(arguments) => export::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),

@@ -30,6 +30,7 @@ fn setup(character: &Character, garment: &Garment) -> Setup {
         template: cloth,
         triangles: garment.mesh.triangles.as_flattened().to_vec(),
         surface: Default::default(),
+        drawn: None,
         body: numbers(&character.body.mesh.positions),
         body_triangles: character.body.mesh.triangles.as_flattened().to_vec(),
         body_weights: character.body.weights.clone(),

@@ -5,7 +5,7 @@ use crate::recorder::Recorder;
 use crate::recording::{Dispatch, Room};
 use crate::{Gpu, Result};
 use ctsn_core::model::{HostModel, Sizes};
-use ctsn_core::network::{Activations, predict};
+use ctsn_core::network::{Activations, Drawn, predict};
 use ctsn_core::pose::Rig;
 use ctsn_core::{Confidence, Streams};
 use std::cell::RefCell;
@@ -39,7 +39,9 @@ pub(crate) struct Inner {
     pub shares: [Option<usize>; 2],
     pub positions: usize,
     pub normals: usize,
-    /// Positions and normals of what is drawn: the cloth's own where the model has no surface.
+    /// Positions and normals of what rides on the cloth; the cloth's own where nothing does.
+    pub shown: [usize; 2],
+    /// Positions and normals of what is drawn: what is shown where the model has no surface.
     pub drawn: [usize; 2],
     /// Rooms of the stages' results, by name: of those that a frame computes.
     pub results: Vec<(String, usize)>,
@@ -93,7 +95,9 @@ fn record(gpu: &Gpu, model: &HostModel) -> Result<Model> {
     let room = |id| recorder.room(id).unwrap_or_else(|| unreachable!("every frame writes it"));
     let (joints, shares) = (room(a.joints), [a.skeleton_share, a.mesh_share].map(|id| recorder.room(id)));
     let (positions, normals) = (room(a.positions), room(a.normals));
-    let drawn = a.drawn.as_ref().map_or([positions, normals], |drawn| [room(drawn.positions), room(drawn.normals)]);
+    let own = |drawn: &Drawn<_>| [room(drawn.positions), room(drawn.normals)];
+    let shown = a.riders.as_ref().map_or([positions, normals], own);
+    let drawn = a.drawn.as_ref().map_or(shown, own);
     let results = a.stages().into_iter().filter_map(|(name, id)| Some((name, recorder.room(*id)?))).collect();
     let Recorder { constants, rooms, .. } = recorder;
     let (gpu, sizes, rig, trust) = (gpu.clone(), model.sizes, Arc::clone(&model.rig), Confidence::new(model));
@@ -109,6 +113,7 @@ fn record(gpu: &Gpu, model: &HostModel) -> Result<Model> {
         shares,
         positions,
         normals,
+        shown,
         drawn,
         results,
     })))

@@ -54,7 +54,8 @@ impl Predictor {
 
     fn make(model: &Model) -> Self {
         let (gpu, inner) = (model.gpu(), &model.0);
-        let shown = |room| [inner.positions, inner.normals].contains(&room) || inner.drawn.contains(&room);
+        let own = [inner.positions, inner.normals];
+        let shown = |room| [own, inner.shown, inner.drawn].as_flattened().contains(&room);
         let buffers = buffers(gpu, &inner.rooms, shown);
         let step = |dispatch: &Dispatch| Step::new(gpu, dispatch, &inner.constants, &buffers);
         let frames = [0, 1, 2].map(|streams| inner.frames[streams].iter().map(step).collect());
@@ -142,7 +143,18 @@ impl Predictor {
         &self.buffers[self.model.0.normals]
     }
 
-    /// Positions of the drawn vertices [d, 3], not padded: of the surface where the model has one, of the cloth
+    /// Positions of the mesh that is drawn, one vertex per place [w, 3], not padded: of what rides on the cloth where
+    /// the model has that, of the cloth otherwise.
+    pub fn shown_positions(&self) -> &wgpu::Buffer {
+        &self.buffers[self.model.0.shown[0]]
+    }
+
+    /// Its unit normals [w, 3].
+    pub fn shown_normals(&self) -> &wgpu::Buffer {
+        &self.buffers[self.model.0.shown[1]]
+    }
+
+    /// Positions of the drawn vertices [d, 3], not padded: of the surface where the model has one, of the shown mesh
     /// otherwise.
     pub fn drawn_positions(&self) -> &wgpu::Buffer {
         &self.buffers[self.model.0.drawn[0]]
@@ -160,6 +172,14 @@ impl Predictor {
     /// [`Error::Lost`]; a prediction that is not finite.
     pub fn read(&self) -> impl Future<Output = Result<Prediction>> + use<> {
         self.read_both([self.positions(), self.normals()])
+    }
+
+    /// As [`Self::read`], of the mesh that is drawn [w, 3].
+    ///
+    /// # Errors
+    /// [`Error::Lost`]; a prediction that is not finite.
+    pub fn read_shown(&self) -> impl Future<Output = Result<Prediction>> + use<> {
+        self.read_both([self.shown_positions(), self.shown_normals()])
     }
 
     /// As [`Self::read`], of the drawn vertices [d, 3].

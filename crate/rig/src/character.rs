@@ -32,6 +32,33 @@ pub struct Surface {
     pub colour: Vec<[f32; 3]>,
 }
 
+/// What a vertex of a drawn mesh rides on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rider {
+    /// Three vertices of the cloth.
+    pub corners: [u32; 3],
+    /// Their barycentric coordinates, negative beyond the triangle, and the offset along the normal between those of
+    /// the corners, metres.
+    pub coordinates: [f64; 4],
+}
+
+/// A mesh that is drawn where the cloth is another: it rides on the cloth.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Drawn {
+    /// Its vertices, one per position.
+    pub riders: Vec<Rider>,
+    /// What is drawn of it: drawn vertex -> rider.
+    pub surface: Surface,
+}
+
+impl Drawn {
+    /// The same on a cloth whose faces were all turned.
+    pub fn turn(&mut self) {
+        self.riders.iter_mut().for_each(|rider| rider.coordinates[3] *= -1.0);
+        self.surface.triangles.iter_mut().for_each(|face| face.swap(1, 2));
+    }
+}
+
 /// Motion sampled at a fixed rate.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Clip {
@@ -72,6 +99,8 @@ pub struct Garment {
     pub surface: Surface,
     /// Vertices of the cloth mesh that are sprung to the body, as a waistband or a collar is; ascending.
     pub pins: Vec<u32>,
+    /// The mesh that its maker drew, where the cloth is another.
+    pub drawn: Option<Drawn>,
 }
 
 impl Character {

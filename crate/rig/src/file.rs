@@ -2,12 +2,32 @@
 
 use crate::{Error, Result};
 use ctsn_core::file::Tensors;
-use std::io::Write;
+use flate2::Compression;
+use flate2::read::MultiGzDecoder;
+use flate2::write::GzEncoder;
+use std::io::{Read, Write};
 use std::path::Path;
 
-/// Reads a whole file.
+/// What a file begins with that gzip has packed.
+const GZIP: [u8; 2] = [0x1f, 0x8b];
+
+/// Reads a whole file, unpacked if it was packed by gzip.
 pub fn read(path: &Path) -> Result<Vec<u8>> {
-    std::fs::read(path).map_err(|source| Error::Io { path: path.to_owned(), source })
+    let io = |source| Error::Io { path: path.to_owned(), source };
+    let bytes = std::fs::read(path).map_err(io)?;
+    if !bytes.starts_with(&GZIP) {
+        return Ok(bytes);
+    }
+    let mut plain = Vec::new();
+    MultiGzDecoder::new(bytes.as_slice()).read_to_end(&mut plain).map_err(io)?;
+    Ok(plain)
+}
+
+/// Packs bytes by gzip, as small as it can.
+pub fn gzip(bytes: &[u8]) -> Vec<u8> {
+    let mut packed = GzEncoder::new(Vec::new(), Compression::best());
+    // A vector takes all that it is given.
+    packed.write_all(bytes).and_then(|()| packed.finish()).unwrap_or_default()
 }
 
 /// Reads a safetensors file, naming the file in errors.

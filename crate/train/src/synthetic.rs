@@ -49,6 +49,7 @@ pub fn dataset(vertices: usize, joints: usize, poses: usize) -> (Setup, Vec<Samp
         template: cloth.clone(),
         triangles: triangles(around, along),
         surface: Default::default(),
+        drawn: None,
         body: place(RADIUS * 0.9),
         body_triangles: triangles(around, along),
         body_weights: weights.collect(),

@@ -91,7 +91,7 @@ impl GpuPredictor {
     /// The last prediction, read back: positions and normals, each [3·n].
     #[wasm_bindgen(unchecked_return_type = "Promise<[Float32Array, Float32Array]>")]
     pub fn read(&self) -> Promise {
-        let read = self.0.read();
+        let read = self.0.read_shown();
         promise(async move {
             let prediction = read.await?;
             let arrays = [prediction.positions, prediction.normals].map(|values| Float32Array::from(values.as_slice()));
@@ -99,11 +99,12 @@ impl GpuPredictor {
         })
     }
 
-    /// Four buffers: positions of the cloth vertices [3·n] and of the drawn vertices [3·d], world, metres; then their
+    /// Four buffers: positions of the shown mesh's vertices [3·n] and of the drawn vertices [3·d], world, metres; then their
     /// unit normals likewise. Tightly packed, to be used as vertex or storage buffers.
     #[wasm_bindgen(unchecked_return_type = "[object, object, object, object]")]
     pub fn buffers(&self) -> Array {
-        let buffers = [self.0.positions(), self.0.drawn_positions(), self.0.normals(), self.0.drawn_normals()];
+        let it = &self.0;
+        let buffers = [it.shown_positions(), it.drawn_positions(), it.shown_normals(), it.drawn_normals()];
         buffers.into_iter().map(handle).collect()
     }
 }

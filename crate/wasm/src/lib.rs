@@ -94,12 +94,12 @@ impl Predictor {
         self.inner.inverse_bind().as_flattened().to_vec()
     }
 
-    /// Triangles of the welded cloth mesh [3·t].
+    /// Triangles of the welded mesh that is shown [3·t].
     pub fn triangles(&self) -> Vec<u32> {
-        self.inner.triangles().to_vec()
+        self.inner.shown_triangles().to_vec()
     }
 
-    /// Drawn vertex -> cloth vertex [d]; nothing if the file holds no surface to draw.
+    /// Drawn vertex -> vertex of the welded mesh [d]; nothing if the file holds no surface to draw.
     pub fn surface_vertex(&self) -> Option<Vec<u32>> {
         self.inner.surface().map(|surface| surface.vertex.clone())
     }
@@ -120,9 +120,9 @@ impl Predictor {
         serde_wasm_bindgen::to_value(&info::Info::of(&self.inner)).unwrap_or_default()
     }
 
-    /// Cloth vertices.
+    /// Vertices of the mesh that is shown: of the cloth, or of what rides on it.
     pub fn vertex_count(&self) -> usize {
-        self.inner.positions().len() / 3
+        self.inner.shown_positions().len() / 3
     }
 
     /// Address of the joint world matrices [16·J], column-major, metres. The caller writes them before
@@ -133,12 +133,12 @@ impl Predictor {
 
     /// Address of the predicted positions [3·n], world, metres.
     pub fn positions_address(&self) -> *const f32 {
-        self.inner.positions().as_ptr()
+        self.inner.shown_positions().as_ptr()
     }
 
     /// Address of the vertex normals [3·n], world, unit length.
     pub fn normals_address(&self) -> *const f32 {
-        self.inner.normals().as_ptr()
+        self.inner.shown_normals().as_ptr()
     }
 
     /// Predicts from the pose at [`Self::pose_address`], with those shares of the two streams' residuals. False if that

@@ -32,7 +32,7 @@ const IN_FLIGHT = 2;
 export class Cloth<M extends Material | Material[] = Material, N extends AnyClothModel = ClothModel> extends Mesh<BufferGeometry, M> {
   override readonly type: string = 'Cloth';
   /**
-   * How much of the network it takes. It may change at any time, and blends. `auto`: what a `Wardrobe` says; without
+   * How much of the network it takes. It may change at any time, and blends. `auto`: what a `ClothScheduler` says; without
    * one, `full`.
    */
   quality: Quality | 'auto' = 'full';
@@ -175,6 +175,8 @@ export class Cloth<M extends Material | Material[] = Material, N extends AnyClot
    * way is void.
    */
   #begin(): void {
+    // Folds that are still on their way fade in.
+    if (this.model.finest === 'coarse') this.#fade.fix(1, 0);
     this.#shown = ++this.#asked;
     if (this.#dressing.read(this)) this.#receive(this.model.predictCloth(this.#dressing.pose, this.#atOnce));
     this.#place();
@@ -189,7 +191,7 @@ export class Cloth<M extends Material | Material[] = Material, N extends AnyClot
 
   #ask(quality: Quality, every: number): void {
     this.#fade.every = every;
-    this.#fade.advance(quality);
+    this.#fade.advance(quality === 'full' ? this.model.finest : quality);
     this.#predict();
   }
 

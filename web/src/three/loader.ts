@@ -13,11 +13,18 @@ export class ClothLoader<M extends ClothModel = CpuClothModel> extends Loader<M>
   #wasm: WasmSources = {};
   #backend: BackendChoice = 'cpu';
   #device: GPUDevice | undefined;
+  #storage: string | undefined;
   #abort = new AbortController();
 
   /** Where the WebAssembly modules come from, as for `loadModel`. */
   setWasm(sources: WasmSources): this {
     this.#wasm = sources;
+    return this;
+  }
+
+  /** Name of the Cache Storage that keeps the files: `cache` of `loadModel`. */
+  setStorage(name: string | undefined): this {
+    this.#storage = name;
     return this;
   }
 
@@ -43,6 +50,7 @@ export class ClothLoader<M extends ClothModel = CpuClothModel> extends Loader<M>
       ...this.#wasm,
       backend: this.#backend,
       device: this.#device,
+      cache: this.#storage,
       request: { headers: this.requestHeader, credentials } satisfies RequestInit,
       signal: this.#signal(),
       onProgress: (progress: Progress) => onProgress?.(toEvent(progress)),

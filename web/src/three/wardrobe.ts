@@ -1,179 +1,241 @@
-import { Frustum, Matrix4, Sphere, Vector3, type Camera, type Material } from 'three';
+import { Group, type Material, type SkinnedMesh } from 'three';
+import { CtsnError } from '../error.js';
+import { loadModel, preload, type LoadOptions, type ModelSource } from '../load.js';
 import type { Quality } from '../quality.js';
-import { refreshAbove } from './bones.js';
-import type { Cloth } from './cloth.js';
-import type { AnyClothModel } from './options.js';
+import type { Character } from './bones.js';
+import { Cloth } from './cloth.js';
+import { Garment } from './garment.js';
+import type { AnyClothModel, ClothOptions } from './options.js';
+import { Skin } from './skin.js';
 
-/** How many predictions a cloth may go without its mesh stream being computed. */
-const RHYTHMS = [1, 2, 4];
-/** A cloth that has the full network keeps it against one that is hardly more important. */
-const LOYALTY = 1.3;
-/** A joint that moves so far in a frame, on average, makes its cloth twice as important; metres. */
-const LIVELY = 0.01;
-/** Weight of the newest measurement in the mean cost. */
-const FRESH = 0.1;
+/** What wardrobes hand to whatever loads their models. */
+export type WearOptions = Pick<LoadOptions, 'signal' | 'onProgress'>;
 
-/** Mean milliseconds of a prediction on the CPU, as measured; nothing where there was none yet. */
-type Cost = Partial<Record<Quality, number>>;
-
-/** A cloth of any material and model. */
-export type AnyCloth = Cloth<Material | Material[], AnyClothModel>;
-
-/** One cloth as the wardrobe sees it in this frame. */
-interface Place {
-  readonly cloth: AnyCloth;
-  readonly before: Float32Array;
-  /** Size on the screen, and how much it moves; 0 off screen. */
-  importance: number;
-  quality: Quality;
-  every: number;
+/** How a wardrobe dresses its character. */
+export interface WardrobeOptions extends ClothOptions {
+  /** What a garment is made of. One object may serve them all; it stays the caller's. */
+  material: Material | ((garment: string) => Material);
+  /** Loads a model; `loadModel` if not given. The place for a backend, a device, or the models of `ctsn/worker`. */
+  load?: ((source: ModelSource, options: WearOptions) => Promise<AnyClothModel>) | undefined;
+  /** Seconds that a change takes; 0: none. A third of a second if not given. */
+  fade?: number | undefined;
+  /**
+   * Which vertices of the character no one sees under a garment: 1 for those. Triangles of such vertices alone are not
+   * drawn while it is worn. `coveredSkin` makes one. Nothing is hidden if not given.
+   */
+  covered?: ((cloth: Cloth<Material, AnyClothModel>, mesh: SkinnedMesh) => Promise<Uint8Array> | Uint8Array) | undefined;
 }
 
 /**
- * The cloths of a page that share a budget of time. Call `update(camera)` once per animation frame in place of the
- * cloths' own `update()`. Cloths of `quality` `'auto'` get what the budget allows: the whole network those that are
- * large on the screen and move, the skeleton stream the rest, plain skinning where even that is too much. What is off
- * screen is not predicted, its shadow neither. A model on the GPU costs no time here: its cloths are full.
+ * The garments of one character, of which it wears some. Add it to the scene and call `update()` once per animation
+ * frame, after the animation. Models are loaded when they are first worn, and disposed of when they no longer are.
+ * Shadows are cast and received as `castShadow` and `receiveShadow` of this object say.
  */
-export class Wardrobe {
-  /** Milliseconds per frame for all predictions. */
-  budget: number;
+export class Wardrobe extends Group {
+  override readonly type: string = 'Wardrobe';
+  /** How much of the network the garments take. */
+  quality: Quality | 'auto' = 'full';
 
-  readonly #places: Place[] = [];
-  readonly #costs = new Map<AnyClothModel, Cost>();
-  readonly #frustum = /* @__PURE__ */ new Frustum();
-  readonly #view = /* @__PURE__ */ new Matrix4();
-  readonly #sphere = /* @__PURE__ */ new Sphere();
-  readonly #eye = /* @__PURE__ */ new Vector3();
-  readonly #tally: Record<Quality, number> = { full: 0, coarse: 0, skinned: 0 };
-  #spent = 0;
+  readonly #character: Character;
+  readonly #sources: Map<string, ModelSource>;
+  readonly #options: WardrobeOptions;
+  readonly #skin: Skin;
+  /** What is on the character: worn, or on its way off. The innermost first. */
+  readonly #garments = new Map<string, Garment>();
+  /** What the last call asked for: none of that is let go of while the rest comes. */
+  #wanted: readonly string[] = [];
+  #call = new AbortController();
+  #last: number | undefined;
+  #disposed = false;
 
-  /** An empty wardrobe; `budget` is in milliseconds per frame. */
-  constructor({ budget = 8 }: { budget?: number } = {}) {
-    this.budget = budget;
+  /** `garments`: model files of this character, by names of the page's. Nothing is loaded before it is worn. */
+  constructor(character: Character, garments: Readonly<Record<string, ModelSource>>, options: WardrobeOptions) {
+    super();
+    if (!(garments instanceof Object)) throw refuse('garments', 'model files by name, { tshirt: url }', garments);
+    if (!(options instanceof Object) || !options.material) throw refuse('options', '{ material }', options);
+    this.#character = character;
+    this.#sources = new Map(Object.entries(garments));
+    this.#options = options;
+    this.#skin = new Skin(character);
   }
 
-  /** Milliseconds that the predictions of the last update took. */
-  get spent(): number {
-    return this.#spent;
+  /** Names of all garments. */
+  get garments(): readonly string[] {
+    return [...this.#sources.keys()];
   }
 
-  /** How many of the cloths that the last update saw had to compute each quality. */
-  get tally(): Readonly<Record<Quality, number>> {
-    return this.#tally;
+  /** Names of what is worn, in the order in which it was put on. */
+  get worn(): readonly string[] {
+    return [...this.#garments].filter(([, { wanted }]) => wanted).map(([name]) => name);
   }
 
-  /** Takes cloths in, each once. */
-  add(...cloths: AnyCloth[]): this {
-    for (const cloth of cloths) {
-      if (this.#places.some((place) => place.cloth === cloth)) continue;
-      const before = new Float32Array(16 * cloth.bones.length);
-      this.#places.push({ cloth, before, importance: 0, quality: 'coarse', every: 1 });
+  /** The cloth of a garment that is worn. */
+  cloth(garment: string): Cloth<Material, AnyClothModel> | undefined {
+    const found = this.#garments.get(garment);
+    return found?.wanted ? found.cloth : undefined;
+  }
+
+  /** Has one garment more, or another model for one that is not worn. */
+  stock(garment: string, source: ModelSource): this {
+    this.#sources.set(garment, source);
+    return this;
+  }
+
+  /** Fetches a garment's file before it is wanted. */
+  async prefetch(garment: string): Promise<void> {
+    const source = this.#source(garment);
+    if (typeof source !== 'string' && !(source instanceof URL)) return;
+    await preload(source).catch(named(garment));
+  }
+
+  /**
+   * Wears these garments, and these alone: several that do not overlap, or none. What was worn stays until all are
+   * there. Answers true once they are worn; false if another call has overtaken this one. Where one of them is refused,
+   * what was worn stays, and the error names the garment.
+   */
+  async wear(garments: string | readonly string[], { signal, onProgress }: WearOptions = {}): Promise<boolean> {
+    const names = [...new Set(typeof garments === 'string' ? [garments] : garments)];
+    names.forEach((name) => this.#source(name));
+    if (this.#disposed) throw new CtsnError('disposed', 'the wardrobe was used after dispose()');
+    signal?.throwIfAborted();
+    this.#call.abort();
+    const call = (this.#call = new AbortController());
+    this.#wanted = names;
+    const either = signal ? AbortSignal.any([signal, call.signal]) : call.signal;
+    const missing = names.filter((name) => !this.#garments.has(name));
+    const coming = missing.map((name) => this.#open(name, { signal: either, onProgress }));
+    const settled = await Promise.allSettled(coming);
+    const failed = settled.find((result) => result.status === 'rejected');
+    if (failed || call.signal.aborted) {
+      for (const result of settled) if (result.status === 'fulfilled') result.value.dispose();
+      if (call.signal.aborted) return false;
+      this.#wanted = this.worn;
+      throw failed!.reason;
+    }
+    settled.forEach((result, i) => result.status === 'fulfilled' && this.#garments.set(missing[i]!, result.value));
+    this.#change(names);
+    return true;
+  }
+
+  /** Moves every garment to where the bones are now, and goes on with a change. */
+  update(): this {
+    const now = performance.now();
+    const seconds = (now - (this.#last ?? now)) / 1000;
+    this.#last = now;
+    this.#fade(seconds);
+    for (const { cloth } of this.#garments.values()) {
+      cloth.quality = this.quality;
+      cloth.update();
     }
     return this;
   }
 
-  /** Lets cloths go: before they are disposed of. */
-  remove(...cloths: AnyCloth[]): this {
-    for (const cloth of cloths) {
-      const at = this.#places.findIndex((place) => place.cloth === cloth);
-      if (at >= 0) this.#places.splice(at, 1);
-    }
+  /** Settles when what the last `update()` asked for is there to be drawn. */
+  async settled(): Promise<this> {
+    await Promise.all([...this.#garments.values()].map(({ cloth }) => cloth.settled()));
     return this;
   }
 
-  /** Predicts every cloth that `camera` sees, for the bones as they stand now. */
-  update(camera: Camera): this {
-    this.#look(camera);
-    for (const place of this.#places) place.importance = this.#weigh(place);
-    sort(this.#places);
-    this.#share();
-    this.#spent = this.#tally.full = this.#tally.coarse = this.#tally.skinned = 0;
-    for (const place of this.#places) if (place.importance > 0) this.#predict(place);
-    return this;
+  /** Takes everything off at once, frees it, and shows all of the skin. */
+  override dispose(): void {
+    this.#disposed = true;
+    this.#call.abort();
+    for (const name of [...this.#garments.keys()]) this.#drop(name);
+    this.#skin.dispose();
+    this.removeFromParent();
+    super.dispose?.();
   }
 
-  #look(camera: Camera): void {
-    refreshAbove(camera);
-    this.#view.copy(camera.matrixWorld).invert();
-    this.#frustum.setFromProjectionMatrix(this.#view.premultiply(camera.projectionMatrix), camera.coordinateSystem);
-    this.#eye.setFromMatrixPosition(camera.matrixWorld);
+  #source(garment: string): ModelSource {
+    const source = this.#sources.get(garment);
+    if (source !== undefined) return source;
+    const all = this.garments.map((name) => `"${name}"`).join(', ') || 'none';
+    throw new CtsnError('argument', `the wardrobe has no garment "${garment}"; its garments are ${all}`);
   }
 
-  /** How important a cloth is now: 0 where it is not seen. */
-  #weigh({ cloth, before, quality }: Place): number {
-    const pose = cloth.locate();
-    if (!pose) return 0;
-    const sphere = this.#sphere.copy(cloth.geometry.boundingSphere!).applyMatrix4(cloth.matrixWorld);
-    const motion = moved(before, pose);
-    if (!cloth.visible || !this.#frustum.intersectsSphere(sphere)) return 0;
-    const size = sphere.radius / Math.max(sphere.center.distanceTo(this.#eye), sphere.radius);
-    return size * (1 + Math.min(motion / LIVELY, 1)) * (quality === 'full' ? LOYALTY : 1);
-  }
-
-  /** Decides every cloth's quality: all are skinned, and what that leaves is spent in order, first on all drapes. */
-  #share(): void {
-    let left = this.budget;
-    for (const { cloth, importance } of this.#places) if (importance > 0) left -= this.#cost(cloth).skinned ?? 0;
-    for (const place of this.#places) {
-      const { skinned = 0, coarse = skinned } = this.#cost(place.cloth);
-      const extra = coarse - skinned;
-      place.quality = place.importance > 0 && extra <= left ? 'coarse' : 'skinned';
-      if (place.quality === 'coarse') left -= extra;
-    }
-    for (const place of this.#places) {
-      if (place.quality !== 'coarse') continue;
-      const { coarse = 0, full } = this.#cost(place.cloth);
-      // What the whole network costs is not known before one cloth has tried it: that one is enough for a frame.
-      const extra = full === undefined ? left : Math.max(full - coarse, 0);
-      for (const every of RHYTHMS) {
-        if (left <= 0 || extra / every > left) continue;
-        place.quality = 'full';
-        place.every = every;
-        left -= extra / every;
-        break;
+  /** Loads a garment and puts it on, unseen. */
+  async #open(name: string, options: WearOptions): Promise<Garment> {
+    const { load = openModel, material } = this.#options;
+    let garment: Garment | undefined;
+    try {
+      const model = await load(this.#source(name), options);
+      try {
+        options.signal?.throwIfAborted();
+        const made = typeof material === 'function' ? material(name) : material;
+        const cloth = new Cloth<Material, AnyClothModel>(model, this.#character, made, this.#options);
+        garment = new Garment(cloth);
+      } catch (error) {
+        model.dispose();
+        throw error;
       }
+      // A model in a worker, or on a GPU whose answers come late, has shown nothing yet.
+      await garment.cloth.settled();
+      await this.#skin.cover(garment, this.#options.covered);
+      options.signal?.throwIfAborted();
+      return garment;
+    } catch (error) {
+      garment?.dispose();
+      throw options.signal?.aborted ? error : about(name, error);
     }
   }
 
-  #predict({ cloth, quality, every }: Place): void {
-    const start = performance.now();
-    const shown = cloth.predict(quality, every);
-    const spent = performance.now() - start;
-    this.#spent += spent;
-    this.#tally[shown]++;
-    if (cloth.backend !== 'cpu') return;
-    const cost = this.#cost(cloth);
-    cost[shown] = (cost[shown] ?? spent) + FRESH * (spent - (cost[shown] ?? spent));
+  /** Begins to show what is there now, and to take off what is not wanted any more. */
+  #change(names: readonly string[]): void {
+    const bare = ![...this.#garments.values()].some(({ share }) => share > 0);
+    for (const [name, garment] of this.#garments) {
+      garment.wanted = names.includes(name);
+      // The first that is put on, and whatever a page without a fade asks for, is there at once.
+      if (garment.wanted && bare) garment.share = 1;
+      const { cloth } = garment;
+      cloth.name = name;
+      cloth.castShadow = this.castShadow;
+      cloth.receiveShadow = this.receiveShadow;
+      cloth.quality = this.quality;
+      if (cloth.parent !== this) this.add(cloth.update());
+    }
+    this.#fade(0);
   }
 
-  #cost({ model }: AnyCloth): Cost {
-    let cost = this.#costs.get(model);
-    if (!cost) this.#costs.set(model, (cost = {}));
-    return cost;
+  /** New garments come to stand before the old ones; these go when the new hide them. So the character is never bare. */
+  #fade(seconds: number): void {
+    const { fade = 1 / 3 } = this.#options;
+    // Half of the time for either way.
+    const step = fade > 0 ? (2 * seconds) / fade : 1;
+    const all = [...this.#garments];
+    const coming = all.some(([, { wanted, share }]) => wanted && share < 1);
+    for (const [name, garment] of all) {
+      if (garment.wanted) garment.share = Math.min(garment.share + step, 1);
+      else if (!coming || fade === 0) garment.share = Math.max(garment.share - step, 0);
+      if (garment.share === 0 && !this.#wanted.includes(name)) this.#drop(name);
+      else garment.show();
+    }
+    this.#skin.hide([...this.#garments.values()].filter(({ share }) => share === 1));
+  }
+
+  #drop(name: string): void {
+    const garment = this.#garments.get(name)!;
+    this.#garments.delete(name);
+    this.remove(garment.cloth);
+    garment.dispose();
   }
 }
 
-/** The most important first. In place and by insertion: the order hardly changes, and no array is made. */
-function sort(places: Place[]): void {
-  for (let i = 1; i < places.length; i++) {
-    const place = places[i]!;
-    let at = i;
-    for (; at > 0 && places[at - 1]!.importance < place.importance; at--) places[at] = places[at - 1]!;
-    places[at] = place;
-  }
-}
+const openModel = (source: ModelSource, options: WearOptions): Promise<AnyClothModel> => loadModel(source, options);
 
-/** Mean distance of the joints from where they were in the body's own frame, metres; they are remembered. */
-function moved(before: Float32Array, pose: Float32Array): number {
-  let sum = 0;
-  for (let at = 12; at < pose.length; at += 16) {
-    const x = pose[at]! - before[at]!;
-    const y = pose[at + 1]! - before[at + 1]!;
-    const z = pose[at + 2]! - before[at + 2]!;
-    // Math.hypot allocates.
-    sum += Math.sqrt(x * x + y * y + z * z);
-  }
-  before.set(pose);
-  return (16 * sum) / pose.length;
+const refuse = (what: string, wanted: string, found: unknown) =>
+  new CtsnError('argument', `new Wardrobe(character, garments, options): ${what} wants ${wanted}, found ${String(found)}`);
+
+/** Throws an error again, with the garment's name. */
+const named =
+  (garment: string) =>
+  (error: unknown): never => {
+    throw about(garment, error);
+  };
+
+/** The same error, of which the message names the garment. */
+function about(garment: string, error: unknown): unknown {
+  if (!(error instanceof Error)) return error;
+  const { code = 'garment', status, joint, joints } = error as Partial<CtsnError>;
+  const details = { ...(status !== undefined && { status }), ...(joint !== undefined && { joint }), ...(joints && { joints }) };
+  return new CtsnError(code, `garment "${garment}": ${error.message}`, { ...details, cause: error });
 }

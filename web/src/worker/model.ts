@@ -3,7 +3,7 @@ import { CtsnError } from '../error.js';
 import type { Frame, Surface } from '../frame.js';
 import type { ModelInfo } from '../info.js';
 import { PoseWriter, type Pose } from '../pose.js';
-import { Fade, fadeOf, type Quality } from '../quality.js';
+import { FadeIn, type Fade, type Quality } from '../quality.js';
 import type { Port } from './port.js';
 import type { Answer, Arrays, Description } from './protocol.js';
 
@@ -18,7 +18,10 @@ export interface WorkerPredictOptions {
   fade?: Fade | undefined;
 }
 
-/** A garment's network in a worker, made by `loadModel` of `ctsn/worker`: as `ClothModel`, but every answer is late. */
+/**
+ * A garment's network in a worker, made by `loadModel` of `ctsn/worker`: as `ClothModel`, but every answer is late.
+ * Dispatches `complete` when the folds of one that was loaded `progressive` are there.
+ */
 export class WorkerClothModel extends EventTarget {
   /** Names of the joints, in the order of the pose [J]. */
   readonly joints: readonly string[];
@@ -34,8 +37,6 @@ export class WorkerClothModel extends EventTarget {
   readonly surface: Surface | undefined;
   /** Threads that compute it, the worker's own among them. */
   readonly threads: number;
-  /** Sizes, bytes, and what it was trained on and how well. */
-  readonly info: ModelInfo;
   /** Where it computes: on the processor. */
   readonly backend = 'cpu';
   /** Why not on a GPU: nothing, since none is asked for. */
@@ -48,6 +49,9 @@ export class WorkerClothModel extends EventTarget {
   readonly #writer: PoseWriter;
   readonly #poses: Float32Array[] = [];
   readonly #spares: Arrays[] = [];
+  readonly #fadeIn: FadeIn;
+  readonly #complete: Promise<this>;
+  #info: ModelInfo;
   #disposed = false;
 
   /** @internal */
@@ -62,8 +66,27 @@ export class WorkerClothModel extends EventTarget {
     this.triangles = description.triangles;
     this.surface = description.surface;
     this.threads = description.threads;
-    this.info = description.info;
+    this.#info = description.info;
     this.#writer = new PoseWriter(this.joints, this.inverseBind);
+    this.#fadeIn = new FadeIn(description.finest);
+    this.#complete = description.finest === 'full' ? Promise.resolve(this) : this.#await();
+    // Nobody has to ask.
+    this.#complete.catch(() => undefined);
+  }
+
+  /** Sizes, bytes, and what it was trained on and how well. */
+  get info(): ModelInfo {
+    return this.#info;
+  }
+
+  /** The best quality there is: `coarse` while the folds of a model that was loaded `progressive` are on their way. */
+  get finest(): Quality {
+    return this.#fadeIn.finest;
+  }
+
+  /** Resolves when the whole network is there, as `ClothModel.complete` does. */
+  get complete(): Promise<this> {
+    return this.#complete;
   }
 
   /** True after `dispose()`. */
@@ -76,7 +99,7 @@ export class WorkerClothModel extends EventTarget {
    * cannot be one is refused here and now; what the network refuses, by the promise.
    */
   predictCloth(pose: Pose, options?: WorkerPredictOptions): Promise<Frame> {
-    const fade = fadeOf(options);
+    const fade = this.#fadeIn.of(options);
     if (this.#disposed) throw new CtsnError('disposed', 'the cloth model was used after dispose()');
     const written = this.#poses.pop() ?? new Float32Array(16 * this.joints.length);
     this.#writer.write(pose, written);
@@ -93,6 +116,15 @@ export class WorkerClothModel extends EventTarget {
     if (this.#disposed) return;
     this.#disposed = true;
     this.#port.tell({ call: 0, type: 'dispose', model: this.#model });
+  }
+
+  async #await(): Promise<this> {
+    const question = { type: 'complete', model: this.#model } as const;
+    const { completed } = await this.#port.ask<Extract<Answer, { completed: object }>>(question, []);
+    this.#info = completed;
+    this.#fadeIn.finest = 'full';
+    this.dispatchEvent(new Event('complete'));
+    return this;
   }
 
   async #predict(pose: Float32Array, { skeleton, mesh }: Fade): Promise<Frame> {

@@ -2,6 +2,7 @@
 import type { LoadOptions } from '../load.js';
 import type { Frame, Surface } from '../frame.js';
 import type { ModelInfo } from '../info.js';
+import type { Quality } from '../quality.js';
 import type { Progress } from '../download.js';
 
 /** Positions and normals [3·n], which go to the page and back, so that none are made for each frame. */
@@ -14,6 +15,7 @@ export interface Arrays {
 export type Request =
   | { call: number; type: 'load'; source: string | Uint8Array; options: LoadOptions }
   | { call: number; type: 'predict'; model: number; pose: Float32Array; shares: [number, number]; spare?: Arrays | undefined }
+  | { call: number; type: 'complete'; model: number }
   | { call: number; type: 'abort' }
   | { call: number; type: 'dispose'; model: number };
 
@@ -28,6 +30,7 @@ export interface Description {
   surface: Surface | undefined;
   threads: number;
   info: ModelInfo;
+  finest: Quality;
 }
 
 /** An error as it crosses: the class does not. */
@@ -43,5 +46,6 @@ export interface Refusal {
 export type Answer =
   | { call: number; progress: Progress }
   | { call: number; loaded: Description }
+  | { call: number; completed: ModelInfo }
   | { call: number; frame: Omit<Frame, 'output'>; pose: Float32Array }
   | { call: number; refusal: Refusal };

@@ -17,6 +17,7 @@ const send = (answer: Answer, transfer: Transferable[] = []) => postMessage(answ
 addEventListener('message', ({ data }: MessageEvent<Request>) => {
   if (data.type === 'predict') return predict(data);
   if (data.type === 'load') return void load(data);
+  if (data.type === 'complete') return void complete(data);
   if (data.type === 'abort') return loads.get(data.call)?.abort();
   models.get(data.model)?.dispose();
   models.delete(data.model);
@@ -39,8 +40,17 @@ async function load({ call, source, options }: Asked<'load'>): Promise<void> {
 
 /** A model has the number of the call that loaded it. */
 function describe(call: number, model: CpuClothModel): Description {
-  const { joints, rootIndex, inverseBind, vertexCount, triangles, surface, threads, info } = model;
-  return { model: call, joints, rootIndex, inverseBind, vertexCount, triangles, surface, threads, info };
+  const { joints, rootIndex, inverseBind, vertexCount, triangles, surface, threads, info, finest } = model;
+  return { model: call, joints, rootIndex, inverseBind, vertexCount, triangles, surface, threads, info, finest };
+}
+
+/** Tells when the whole of a model is there. */
+async function complete({ call, model }: Asked<'complete'>): Promise<void> {
+  try {
+    send({ call, completed: (await models.get(model)!.complete).info });
+  } catch (error) {
+    send({ call, refusal: refuse(error) });
+  }
 }
 
 function predict({ call, model, pose, shares, spare }: Asked<'predict'>): void {

@@ -1,10 +1,12 @@
-// A crowd of the demo's character: `?count=50` says how many, `?quality=` and `?budget=` preset the controls.
+// A crowd of the whole cast: `?count=50` says how many, `?figure=andy` of whom alone, `?quality=` and `?budget=` preset the controls.
 import { loadModel, type Quality } from 'ctsn';
 import { FileLoader } from 'three';
+import cast from 'virtual:cast';
+import { element } from '../dom.js';
 import { run } from '../failure.js';
 import { Meter } from '../meter.js';
-import { element } from '../panel.js';
-import { Crowd } from './crowd.js';
+import { Character } from '../figure/character.js';
+import { Crowd, type Pair } from './crowd.js';
 import type { CrowdHook } from './hook.js';
 
 const nobody = { full: 0, coarse: 0, skinned: 0 };
@@ -18,14 +20,17 @@ const hook: CrowdHook = (window.ctsnCrowd = {
 
 async function start(): Promise<void> {
   const wanted = new URL(location.href).searchParams;
-  const base = import.meta.env.BASE_URL;
-  const [glb, model] = await Promise.all([
-    new FileLoader().setResponseType('arraybuffer').loadAsync(`${base}andy.glb`),
-    loadModel(`${base}tshirt.safetensors`),
-  ]);
+  const figures = cast.filter(({ id }) => [null, id].includes(wanted.get('figure')));
+  const pairs = await Promise.all(
+    figures.map(async ({ name, file, garments: [garment] }): Promise<Pair> => {
+      const glb = new FileLoader().setResponseType('arraybuffer').loadAsync(file) as Promise<ArrayBuffer>;
+      const [bytes, model] = await Promise.all([glb, loadModel(garment!.file)]);
+      return { character: await Character.parse(bytes, name), garment: garment!, model };
+    }),
+  );
   const count = Number(wanted.get('count') ?? 50);
   element('count').textContent = count === 50 ? 'Fifty' : String(count);
-  const crowd = await Crowd.gather(element<HTMLCanvasElement>('stage'), glb as ArrayBuffer, model, count);
+  const crowd = new Crowd(element<HTMLCanvasElement>('stage'), pairs, count);
   const meter = new Meter();
   element('loading').hidden = true;
   element('panel').hidden = false;
@@ -33,7 +38,7 @@ async function start(): Promise<void> {
   const budget = element<HTMLInputElement>('budget');
   const radios = [...document.querySelectorAll<HTMLInputElement>('input[name=quality]')];
   const choose = () => {
-    crowd.wardrobe.budget = Number(budget.value);
+    crowd.scheduler.budget = Number(budget.value);
     crowd.choose(radios.find((radio) => radio.checked)!.value as Quality | 'auto');
     element('milliseconds-wanted').textContent = `${budget.value} ms per frame`;
     meter.reset();
@@ -50,8 +55,8 @@ async function start(): Promise<void> {
     const seconds = Math.min((now - (last ?? now)) / 1000, 0.1);
     last = now;
     crowd.frame(seconds);
-    meter.add(crowd.wardrobe.spent);
-    const { tally } = crowd.wardrobe;
+    meter.add(crowd.scheduler.spent);
+    const { tally } = crowd.scheduler;
     Object.assign(hook, { frames: meter.count, milliseconds: meter.median, tally });
     element('milliseconds').textContent = `${meter.median.toFixed(1)} ms`;
     element('qualities').textContent = `${tally.full}, ${tally.coarse}, ${tally.skinned}`;

@@ -27,7 +27,8 @@ pub struct Part {
     pub exponent: f64,
     /// What it does to the rows before it in its shell.
     pub role: Role,
-    /// Radius of the smooth union with the rows before it. For paint: width of the soft border, 0 for a crisp one.
+    /// Radius of the smooth union with the rows before it, above 0 where they, or its mirror image, are near. For
+    /// paint: width of the soft border, 0 for a crisp one.
     pub blend: f64,
     /// Which closed mesh it belongs to: 0 is the body; eyes, teeth, horns or hair have a number of their own.
     pub shell: usize,

@@ -2,18 +2,23 @@
 //! simulation.md §4.1.
 
 mod andy;
+mod anna;
 mod cat;
 mod colour;
 mod dolphin;
+mod face;
 mod figure;
 mod fox;
+mod hand;
 mod loft;
 mod mannequin;
 mod monster;
 mod paw;
+mod person;
 mod prop;
 mod qman;
 mod remesh;
+mod shoe;
 mod surface;
 mod weights;
 
@@ -30,6 +35,7 @@ use loft::Loft;
 const FIGURES: &[(&str, Figure)] = &[
     ("mannequin", mannequin::MANNEQUIN),
     ("andy", andy::ANDY),
+    ("anna", anna::ANNA),
     ("qman", qman::QMAN),
     ("monster", monster::MONSTER),
     ("cat", cat::CAT),

@@ -15,6 +15,7 @@ mod mend;
 mod opening;
 mod pattern;
 mod quality;
+mod resampling;
 mod sheet;
 mod unwrap;
 
@@ -40,6 +41,7 @@ pub use check::{Fault, Findings, Fitted, check, fit, load, rehearse, sketch};
 pub use drape::{Rest, drape};
 pub use kind::Kind;
 pub use quality::{Quality, quality};
+pub use resampling::Resample;
 
 /// How a garment is cut; what is `None` follows from the kind. Fractions run along a limb from where it leaves the
 /// trunk (0) to its tip (1).
@@ -123,7 +125,7 @@ pub fn shell(character: &Character, cut: &Cut) -> Result<Garment> {
         )));
     }
     let pins = pins(&piece, &pattern.openings, quality.edge);
-    Ok(Garment { surface: unwrap::unwrap(&piece.mesh), mesh: piece.mesh, pins })
+    Ok(Garment { surface: unwrap::unwrap(&piece.mesh), mesh: piece.mesh, pins, drawn: None })
 }
 
 /// The character without its obstacles.

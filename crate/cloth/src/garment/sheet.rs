@@ -36,7 +36,7 @@ pub(super) fn sheet(rail: &Character, vertices: usize) -> Result<Garment> {
         above = below;
     }
     let pins = (0..=columns as u32).collect();
-    Ok(Garment { surface: unwrap::unwrap(&mesh), mesh, pins })
+    Ok(Garment { surface: unwrap::unwrap(&mesh), mesh, pins, drawn: None })
 }
 
 /// Places of the vertices of a row, in columns: between those of an even row for an odd one, and at both ends.

@@ -23,5 +23,5 @@ pub(crate) use field::Field;
 pub(crate) use nearest::{Faces, bounds, squared_distance};
 pub(crate) use proxy::complete;
 pub(crate) use region::{Plane, Region};
-pub(crate) use remesh::remesh;
+pub(crate) use remesh::{even, remesh};
 pub(crate) use solid::{Solid, cell, split};

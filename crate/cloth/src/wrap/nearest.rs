@@ -34,6 +34,11 @@ impl<'a> Faces<'a> {
 
     /// The nearest face, the first of equals in the mesh's order, and its closest point, metres; none in an empty mesh.
     pub fn nearest(&self, point: DVec3) -> Option<(usize, DVec3)> {
+        self.nearest_of(point, |_| true)
+    }
+
+    /// The nearest of the faces that `counts` names; none where it names none.
+    pub fn nearest_of(&self, point: DVec3, counts: impl Fn(usize) -> bool) -> Option<(usize, DVec3)> {
         let foot = |face: u32| {
             let corners = self.mesh.triangles[face as usize].map(|i| self.mesh.positions[i as usize]);
             triangle::closest_point(point, corners)
@@ -43,13 +48,16 @@ impl<'a> Faces<'a> {
             near if near.is_finite() => near,
             _ => f64::INFINITY,
         };
-        let (_, least) =
-            self.tree.find_best(f64::MAX, |node, _| squared_distance(node, point), |face, _| Some(squared(face)))?;
+        let (_, least) = self.tree.find_best(
+            f64::MAX,
+            |node, _| squared_distance(node, point),
+            |face, _| counts(face as usize).then(|| squared(face)),
+        )?;
         // Faces that meet in the closest point are all as near: the tree finds any of them.
         let reach = 1.000_001 * least.sqrt() + f64::MIN_POSITIVE;
-        let near = bounds([point - reach, point + reach, point]);
         let nearer = |a: &u32, b: &u32| squared(*a).total_cmp(&squared(*b)).then(a.cmp(b));
-        let face = self.tree.intersect_aabb(&near).min_by(nearer)?;
+        let near = bounds([point - reach, point + reach, point]);
+        let face = self.tree.intersect_aabb(&near).filter(|face| counts(*face as usize)).min_by(nearer)?;
         Some((face as usize, foot(face)))
     }
 
@@ -85,6 +93,12 @@ impl<'a> Faces<'a> {
             let along = meeting.map(|at| at.along).filter(|along| (0.0..=reach).contains(along))?;
             Some((face as usize, along))
         })
+    }
+
+    /// The faces whose boxes come as near to a point along every axis as `reach`, metres.
+    pub fn within(&self, point: DVec3, reach: f64) -> Vec<u32> {
+        let near = bounds([point - reach, point + reach, point]);
+        self.tree.intersect_aabb(&near).collect()
     }
 }
 

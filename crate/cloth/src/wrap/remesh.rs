@@ -1,4 +1,5 @@
-//! Isotropic remeshing: split, collapse, flip, relax, and project onto the field's zero set; rims stay on their planes.
+//! Isotropic remeshing: split, collapse, flip, relax, and project: onto a field's zero set, rims onto their planes, or
+//! onto whatever a caller names.
 //! Botsch & Kobbelt, A Remeshing Approach to Multiresolution Modeling (2004), §4.
 
 use super::cut::Piece;
@@ -9,12 +10,30 @@ use ctsn_rig::mesh::{DynamicMesh, around, ordered};
 use glam::DVec3;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Remeshes to an edge length that gives about `target` vertices.
+/// Where a vertex belongs that came to a point: by its rim, where it is on one, that point, and its unit normal.
+pub(crate) type Onto<'a> = dyn Fn(Option<usize>, DVec3, DVec3) -> DVec3 + 'a;
+
+/// Remeshes a field's zero set to an edge length that gives about `target` vertices; rims stay on the borders of their
+/// regions.
 pub(crate) fn remesh(piece: Piece, field: &Field, regions: &[Region], target: usize) -> Piece {
+    let onto = |rim: Option<usize>, mut point: DVec3, _: DVec3| {
+        let Some(region) = rim else { return field.project(point) };
+        for _ in 0..3 {
+            point = field.project(point);
+            point = regions[region].project(point);
+        }
+        point
+    };
+    even(piece, &onto, target)
+}
+
+/// Remeshes to an edge length that gives about `target` vertices, which stay where `onto` puts them.
+pub(crate) fn even(piece: Piece, onto: &Onto, target: usize) -> Piece {
     let area = piece.mesh.area();
     // An even triangulation has one vertex per two equilateral triangles, √3/2 L² of surface.
     let mut edge = (area / (target as f64 * 0.866)).sqrt();
-    let mut sheet = Sheet::new(piece, field, regions);
+    let Piece { mesh, rim } = piece;
+    let mut sheet = Sheet { mesh: DynamicMesh::new(mesh), rim, onto };
     for round in 0..14 {
         sheet.split(4.0 / 3.0 * edge);
         sheet.collapse(0.8 * edge, 4.0 / 3.0 * edge);
@@ -45,18 +64,12 @@ enum Better {
 /// A mesh under edit.
 struct Sheet<'a> {
     mesh: DynamicMesh,
-    /// Region per rim vertex.
+    /// Region or loop per rim vertex.
     rim: Vec<Option<usize>>,
-    field: &'a Field,
-    regions: &'a [Region],
+    onto: &'a Onto<'a>,
 }
 
-impl<'a> Sheet<'a> {
-    fn new(piece: Piece, field: &'a Field, regions: &'a [Region]) -> Sheet<'a> {
-        let Piece { mesh, rim } = piece;
-        Sheet { mesh: DynamicMesh::new(mesh), rim, field, regions }
-    }
-
+impl Sheet<'_> {
     fn into_piece(self) -> Piece {
         let (mesh, kept) = self.mesh.finish();
         Piece { mesh, rim: kept.into_iter().map(|v| self.rim[v]).collect() }
@@ -65,17 +78,6 @@ impl<'a> Sheet<'a> {
     /// Edges (low, high), ascending.
     fn edges(&self) -> Vec<[u32; 2]> {
         self.mesh.triangles().flat_map(around).map(ordered).collect::<BTreeSet<_>>().into_iter().collect()
-    }
-
-    /// Onto the zero set; rim vertices onto their region's border as well.
-    fn project(&self, v: u32, mut point: DVec3) -> DVec3 {
-        let Some(region) = self.rim[v as usize] else { return self.field.project(point) };
-        let region = &self.regions[region];
-        for _ in 0..3 {
-            point = self.field.project(point);
-            point = region.project(point);
-        }
-        point
     }
 
     /// Splits every edge longer than `longest` at its middle, longest edges first.
@@ -197,7 +199,8 @@ impl<'a> Sheet<'a> {
             }
             let near = along.get(&v).cloned().unwrap_or_else(|| mesh.ring(v));
             let mean = near.iter().map(|&w| mesh.positions[w as usize]).sum::<DVec3>() / near.len() as f64;
-            self.project(v, mesh.slid(v, mean))
+            let normal = mesh.fan(v).iter().filter_map(|t| mesh.triangle(*t)).map(|t| mesh.cross(t)).sum::<DVec3>();
+            (self.onto)(self.rim[v as usize], mesh.slid(v, mean), normal.normalize_or_zero())
         });
         self.mesh.positions = moved.collect();
     }

@@ -19,6 +19,8 @@ pub mod network {
     pub mod linear;
     pub mod normals;
     pub mod polish;
+    pub mod pull;
+    pub mod ride;
     pub mod skin;
     pub mod surface;
 }

@@ -16,7 +16,7 @@ pub const MOST_STEPS: usize = 256;
 /// The garment without strain.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cut<B> {
-    /// Steps of the polish; the next even number of them is taken.
+    /// Steps of the polish.
     pub steps: usize,
     /// Positions, metres [n, 3]: only their distances matter.
     pub positions: Vec<f32>,

@@ -3,15 +3,18 @@
 
 mod body;
 mod cut;
+pub mod pack;
 mod read;
+mod ride;
 mod write;
 
 use crate::pose::Rig;
 use crate::topology::Graph;
 pub use body::{Body, Fans, areas};
 pub use cut::{Cut, MOST_STEPS, STEPS};
+pub use ride::Ride;
 use std::sync::Arc;
-pub use write::Storage;
+pub use write::{Storage, file_bytes};
 
 /// Name of the skin weights `W_C`, in the file and among [`Model::parameters`].
 pub const CLOTH_WEIGHTS: &str = "cloth.weights";
@@ -102,7 +105,7 @@ pub struct Layer<B> {
 /// Seams kept for drawing: several drawn vertices may share one cloth vertex.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Surface<I = Vec<u32>> {
-    /// Drawn vertex -> cloth vertex [d].
+    /// Drawn vertex -> vertex of what rides on the cloth where the model has a [`Ride`], cloth vertex otherwise [d].
     pub vertex: I,
     /// Texture coordinates [d, 2].
     pub uv: Vec<f32>,
@@ -141,6 +144,8 @@ pub struct Model<B, I> {
     pub mesh_stream: bool,
     /// What is drawn, when it differs from the cloth mesh.
     pub surface: Option<Surface<I>>,
+    /// How another mesh than the cloth's rides on it to be drawn.
+    pub ride: Option<Ride<B, I>>,
     /// How the cloth was cut.
     pub cut: Option<Cut<B>>,
     /// What the cloth is kept out of.
@@ -222,6 +227,7 @@ impl<B, I> Model<B, I> {
                 uv: surface.uv.clone(),
                 triangles: surface.triangles.clone(),
             }),
+            ride: self.ride.as_ref().map(|ride| ride.map(values, indices)),
             cut: self.cut.as_ref().map(|cut| cut.map(values)),
             body: self.body.as_ref().map(|body| body.map(values, indices)),
             training: self.training.clone(),

@@ -1,6 +1,6 @@
 //! Model file -> model, checking every name, shape and index. network.md §8.
 
-use super::{Body, Cut, HostModel, Layer, Linear, Model, Reference, Sizes, Skinning, Surface};
+use super::{Body, Cut, HostModel, Layer, Linear, Model, Reference, Ride, Sizes, Skinning, Surface, pack};
 use super::{CLOTH_WEIGHTS, MESH_BASIS, SKELETON_BASIS, STEPS};
 use crate::error::{Decimal, Error, Result};
 use crate::file::Tensors;
@@ -26,8 +26,12 @@ pub(super) struct Description {
 impl HostModel {
     /// Reads a model file; nothing in it is trusted.
     pub fn parse(bytes: &[u8]) -> Result<Self> {
-        let file = Tensors::parse(bytes)?;
-        let description = describe(&file)?;
+        Self::read(&Tensors::parse(bytes)?)
+    }
+
+    /// The same of a file's tensors.
+    pub fn read(file: &Tensors) -> Result<Self> {
+        let description = describe(file)?;
         let (rest, shape) = file.f32("cloth.rest", &[None, Some(3)])?;
         let (n, joints) = (shape[0], description.joints.len());
         if n == 0 || joints == 0 {
@@ -35,10 +39,11 @@ impl HostModel {
         }
         let triangles = file.u32("cloth.triangles", &[None, Some(3)], n)?;
         let dense = file.f32(CLOTH_WEIGHTS, &[Some(n), Some(joints)])?.0;
-        let (skeleton_basis, m) = basis(&file, SKELETON_BASIS, n)?;
-        let (mesh_basis, k) = basis(&file, MESH_BASIS, n)?;
-        let embedding = mlp(&file, "embedding", 12 * joints, Some(m))?;
-        let layers = graph(&file)?;
+        let graph = Graph::new(n, &triangles);
+        let (skeleton_basis, m) = basis(file, SKELETON_BASIS, &graph)?;
+        let (mesh_basis, k) = basis(file, MESH_BASIS, &graph)?;
+        let embedding = mlp(file, "embedding", 12 * joints, Some(m))?;
+        let layers = layers(file)?;
         let features = layers.last().map_or(3, |layer| layer.project.outputs / 4);
         let heads = description.heads;
         if layers.is_empty()
@@ -51,26 +56,27 @@ impl HostModel {
                 layers.len()
             )));
         }
-        let graph = Graph::new(n, &triangles);
+        let surface = surface(file, Ride::count(file)?.unwrap_or(n))?;
         let steps = description.polish.map_or(STEPS, |steps| steps as usize);
         Ok(Model {
             sizes: Sizes { vertices: n, joints, embedding: m, basis: k, features, heads },
-            cut: Cut::read(&file, n, &graph, steps)?,
+            cut: Cut::read(file, n, &graph, steps)?,
             graph,
             triangles,
             rest,
             skinning: Skinning::from_dense(&dense, joints),
-            reference: reference(&file, n, joints, description.edge_scale)?,
+            reference: reference(file, n, joints, description.edge_scale)?,
             embedding,
             skeleton_basis,
             layers,
-            vertex_mlp: mlp(&file, "vertex", features, Some(k))?,
+            vertex_mlp: mlp(file, "vertex", features, Some(k))?,
             mesh_stream: mesh_basis.iter().any(|value| *value != 0.0),
             mesh_basis,
-            surface: surface(&file, n)?,
-            body: Body::read(&file, n, joints)?,
+            ride: Ride::read(file, n, surface.as_ref())?,
+            surface,
+            body: Body::read(file, n, joints)?,
             training: file.metadata.get("training").cloned(),
-            rig: Arc::new(rig(&file, description)?),
+            rig: Arc::new(rig(file, description)?),
         })
     }
 }
@@ -166,12 +172,13 @@ impl Skinning<Vec<f32>, Vec<u32>> {
 }
 
 /// `[count, n, 3]` in the file -> vertex-major `[n, 3, count]`, so that one vertex's numbers lie together.
-fn basis(file: &Tensors, name: &str, n: usize) -> Result<(Vec<f32>, usize)> {
-    let (values, shape) = file.f32(name, &[None, Some(n), Some(3)])?;
-    if shape[0] == 0 {
+fn basis(file: &Tensors, name: &str, graph: &Graph<Vec<u32>>) -> Result<(Vec<f32>, usize)> {
+    let n = graph.offsets.len() - 1;
+    let (values, count) = pack::basis(file, name, graph)?;
+    if count == 0 {
         return Err(Error::NotModel(format!("{name} holds no matrix")));
     }
-    Ok((transpose(&values, shape[0], n * 3), shape[0]))
+    Ok((transpose(&values, count, n * 3), count))
 }
 
 /// [rows, columns] -> [columns, rows].
@@ -208,7 +215,7 @@ fn mlp(file: &Tensors, name: &str, inputs: usize, outputs: Option<usize>) -> Res
     Ok(layers)
 }
 
-fn graph(file: &Tensors) -> Result<Vec<Layer<Vec<f32>>>> {
+fn layers(file: &Tensors) -> Result<Vec<Layer<Vec<f32>>>> {
     let (mut layers, mut inputs) = (Vec::new(), 3);
     for l in 0..count(file, "graph") {
         let layer = layer(file, l, inputs)?;
@@ -240,6 +247,7 @@ fn layer(file: &Tensors, l: usize, inputs: usize) -> Result<Layer<Vec<f32>>> {
     })
 }
 
+/// What draws a mesh of `n` vertices: the cloth, or what rides on it.
 fn surface(file: &Tensors, n: usize) -> Result<Option<Surface>> {
     if !file.tensors.contains_key("draw.vertex") {
         return Ok(None);
@@ -250,7 +258,7 @@ fn surface(file: &Tensors, n: usize) -> Result<Option<Surface>> {
     Ok(Some(Surface { vertex, uv, triangles }))
 }
 
-fn finite(what: &str, values: &[f32]) -> Result<()> {
+pub(super) fn finite(what: &str, values: &[f32]) -> Result<()> {
     match values.iter().position(|value| !value.is_finite()) {
         Some(element) => Err(Error::NotFinite { what: what.to_owned(), element, found: values[element] }),
         None => Ok(()),

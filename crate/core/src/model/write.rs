@@ -6,6 +6,16 @@ use crate::file::{Tensor, Tensors};
 use crate::pose::Frame;
 use miniserde::json;
 
+/// A model's file: the mesh stream's tensors stand last, and `__metadata__["coarse"]` says where they begin, so that a
+/// page can show the coarse cloth before they are there.
+pub fn file_bytes(mut file: Tensors) -> Vec<u8> {
+    let folds = |name: &str| ["graph.", "vertex.", "mesh."].iter().any(|prefix| name.starts_with(prefix));
+    let coarse = file.tensors.iter().filter(|(name, _)| !folds(name)).map(|(_, tensor)| tensor.bytes.len());
+    let coarse = coarse.sum::<usize>().to_string();
+    file.metadata.insert("coarse".to_owned(), coarse);
+    file.to_bytes_with_last(folds)
+}
+
 /// How learned tensors are stored; everything else stays F32.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Storage {
@@ -55,13 +65,16 @@ impl HostModel {
         self.write_cloth(&mut writer);
         self.write_reference(&mut writer);
         self.write_network(&mut writer);
+        if let Some(ride) = &self.ride {
+            ride.write(&mut writer);
+        }
         if let Some(cut) = &self.cut {
             cut.write(&mut writer);
         }
         if let Some(body) = &self.body {
             body.write(self.sizes.vertices, &mut writer);
         }
-        writer.file.to_bytes()
+        file_bytes(writer.file)
     }
 
     fn description(&self) -> String {

@@ -65,22 +65,32 @@ pub struct Activations<B> {
     pub template: B,
     /// Predicted positions [n, 3].
     pub positions: B,
-    /// Every second state of the polish [n, 3], where the model has one.
-    pub polished: Option<B>,
+    /// What the polish computes on its way, where the model has one.
+    pub polish: Option<Polishing<B>>,
     /// What the repair of penetration computes, where the model has a body.
     pub collision: Option<Collision<B>>,
     /// Unit normals of the predicted positions [n, 3].
     pub normals: B,
+    /// Another mesh than the cloth's, which rides on it [w, 3], where the model has one.
+    pub riders: Option<Drawn<B>>,
     /// The same of the drawn vertices, where the model tells them apart from the cloth's.
     pub drawn: Option<Drawn<B>>,
 }
 
-/// What is drawn: vertices split at seams.
+/// What is drawn: a mesh that rides on the cloth, or vertices split at seams.
 pub struct Drawn<B> {
-    /// Positions [d, 3].
+    /// Positions [w or d, 3].
     pub positions: B,
-    /// Unit normals [d, 3].
+    /// Unit normals [w or d, 3].
     pub normals: B,
+}
+
+/// What the polish computes on its way.
+pub struct Polishing<B> {
+    /// Pulls of the edges [n, 3].
+    pub pulls: B,
+    /// How far the last step went [n, 3].
+    pub moves: B,
 }
 
 /// What a graph layer computes on its way.
@@ -126,9 +136,16 @@ impl<B> Activations<B> {
             coarse: buffer("skeleton", n * 3),
             template: buffer("template", n * 3),
             positions: buffer("positions", n * 3),
-            polished: model.cut.as_ref().map(|_| buffer("polish", n * 3)),
+            polish: model
+                .cut
+                .as_ref()
+                .map(|_| Polishing { pulls: buffer("polish", n * 3), moves: buffer("polish", n * 3) }),
             collision: model.body.as_ref().map(|body| Collision::new(body.vertices, n, &mut buffer)),
             normals: buffer("normals", n * 3),
+            riders: model.ride.as_ref().map(|ride| Drawn {
+                positions: buffer("ride", ride.corners.len()),
+                normals: buffer("ride", ride.corners.len()),
+            }),
             drawn: model.surface.as_ref().filter(|surface| !surface.vertex.is_empty()).map(|surface| Drawn {
                 positions: buffer("surface", surface.vertex.len() * 3),
                 normals: buffer("surface", surface.vertex.len() * 3),
@@ -181,11 +198,19 @@ pub(crate) fn pose<D: Device>(device: &mut D, model: &DeviceModel<D>, a: &mut Ac
 /// Positions in the world -> normals, and what is drawn.
 pub(crate) fn finish<D: Device>(device: &mut D, model: &DeviceModel<D>, a: &mut Activations<D::Buffer>) {
     device.run(Normals { positions: &a.positions, triangles: &model.triangles, normals: &mut a.normals }.into());
+    if let (Some(ride), Some(riders)) = (&model.ride, &mut a.riders) {
+        let (positions, normals) = (&a.positions, &a.normals);
+        let (corners, coordinates) = (&ride.corners, &ride.coordinates);
+        device.run(operation::Ride { corners, coordinates, positions, normals, riders: &mut riders.positions }.into());
+        let (positions, triangles) = (&riders.positions, &ride.triangles);
+        device.run(Normals { positions, triangles, normals: &mut riders.normals }.into());
+    }
     if let (Some(surface), Some(drawn)) = (&model.surface, &mut a.drawn) {
+        let riders = a.riders.as_ref();
         let surface = operation::Surface {
             vertex: &surface.vertex,
-            positions: &a.positions,
-            normals: &a.normals,
+            positions: riders.map_or(&a.positions, |riders| &riders.positions),
+            normals: riders.map_or(&a.normals, |riders| &riders.normals),
             drawn_positions: &mut drawn.positions,
             drawn_normals: &mut drawn.normals,
         };

@@ -167,12 +167,13 @@ impl Predictor {
         }
         repair(device, model, streams, a);
         finish(device, model, a);
-        match a.positions.iter().position(|value| !value.is_finite()) {
-            Some(element) => {
-                Err(Error::NotFinite { what: "positions".to_owned(), element, found: a.positions[element] })
+        for positions in [Some(&a.positions), a.riders.as_ref().map(|riders| &riders.positions)].into_iter().flatten() {
+            if let Some(element) = positions.iter().position(|value| !value.is_finite()) {
+                let found = positions[element];
+                return Err(Error::NotFinite { what: "positions".to_owned(), element, found });
             }
-            None => Ok(()),
         }
+        Ok(())
     }
 
     /// What the residuals count in the pose that was read.
@@ -197,6 +198,22 @@ impl Predictor {
     /// Unit vertex normals [n, 3] of the predicted positions.
     pub fn normals(&self) -> &[f32] {
         &self.activations.normals
+    }
+
+    /// Positions of the mesh that is drawn, one vertex per place [w, 3]: of what rides on the cloth where the model has
+    /// that, of the cloth otherwise.
+    pub fn shown_positions(&self) -> &[f32] {
+        self.activations.riders.as_ref().map_or(self.positions(), |riders| &riders.positions)
+    }
+
+    /// Its unit normals [w, 3].
+    pub fn shown_normals(&self) -> &[f32] {
+        self.activations.riders.as_ref().map_or(self.normals(), |riders| &riders.normals)
+    }
+
+    /// Its triangles [t, 3].
+    pub fn shown_triangles(&self) -> &[u32] {
+        self.model.ride.as_ref().map_or(self.triangles(), |ride| &ride.triangles)
     }
 
     /// Positions of the drawn vertices [d, 3]: of the surface where the model has one, of the cloth otherwise.

@@ -137,7 +137,7 @@ impl Steps<'_> {
     fn check(&self) -> Result<Markup> {
         let found = sketch(self.garment, self.character)?;
         let mut complete = Character { clips: Vec::new(), ..self.character.clone() };
-        let hung = load(self.garment, &mut complete).and_then(|fitted| {
+        let hung = load(self.garment, &mut complete, self.arguments.options.resample).and_then(|fitted| {
             let moved = rehearse(&complete, &fitted.garment, self.arguments.options.pinched)?;
             Ok((fitted, moved))
         });

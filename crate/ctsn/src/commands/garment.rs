@@ -4,7 +4,7 @@ use super::file_name;
 use super::simulate::{PINCHED, add_body};
 use crate::pages;
 use anyhow::{Context, Result};
-use ctsn_cloth::garment::{Cut, Rest, default_kind, drape, load, rehearse, shell, sketch};
+use ctsn_cloth::garment::{Cut, Resample, Rest, default_kind, drape, load, rehearse, shell, sketch};
 use ctsn_rig::{Garment, file, gltf};
 use std::path::{Path, PathBuf};
 
@@ -36,6 +36,9 @@ pub struct Arguments {
     /// With --check, take the body of this file (glTF) where the character's own skin is missing
     #[arg(long, value_name = "OTHER", requires = "check")]
     body: Option<PathBuf>,
+    /// The mesh that --check simulates, as of `simulate`: auto, never, or the length of an edge in mm
+    #[arg(long, value_name = "WHEN", default_value_t = Resample::Auto, requires = "check")]
+    resample: Resample,
     #[command(flatten)]
     cut: Cut,
 }
@@ -52,7 +55,7 @@ fn check(arguments: &Arguments, path: &Path) -> Result<()> {
     let mut character = gltf::read_character(&arguments.character, 1.0)?;
     arguments.body.as_deref().map_or(Ok(()), |other| add_body(&mut character, other))?;
     let bare = character.clone();
-    let found = load(path, &mut character);
+    let found = load(path, &mut character, arguments.resample);
     let hung = found.and_then(|fitted| {
         let moved = rehearse(&character, &fitted.garment, PINCHED)?;
         Ok((fitted, moved))

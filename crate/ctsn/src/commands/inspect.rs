@@ -26,6 +26,10 @@ pub fn run(Arguments { path }: &Arguments) -> Result<()> {
     let sizes = model.sizes;
     println!("{}: {} bytes, {} tensors", path.display(), bytes.len(), tensors.tensors.len());
     println!("  cloth      {} vertices, {} triangles", sizes.vertices, model.triangles.len() / 3);
+    if let Some(ride) = &model.ride {
+        let (vertices, triangles) = (ride.corners.len() / 3, ride.triangles.len() / 3);
+        println!("  drawn      {vertices} vertices, {triangles} triangles, which ride on the cloth");
+    }
     println!("  joints     {}, root {}, frame {:?}", sizes.joints, model.rig.joints[model.rig.root], model.rig.frame);
     println!("  embedding  m = {}, layers {}", sizes.embedding, outputs(&model.embedding));
     println!("  graph      {} layers, {} heads × {}", model.layers.len(), sizes.heads, sizes.features / sizes.heads);

@@ -8,6 +8,7 @@ pub mod export;
 pub mod garment;
 pub mod inspect;
 pub mod motion;
+pub mod pack;
 pub mod polish;
 pub mod predict;
 pub mod render;
@@ -17,10 +18,10 @@ pub mod split;
 pub mod study;
 pub mod train;
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use ctsn_core::model::HostModel;
-use ctsn_rig::{Character, Clip, file};
+use ctsn_rig::{Character, Clip, Pose, file};
 use indicatif::{HumanDuration, ProgressBar, ProgressState, ProgressStyle};
 use std::path::Path;
 use std::time::Duration;
@@ -41,6 +42,18 @@ pub fn one_of<T: Clone + Send + Sync>(choices: &'static [(&str, &str, T)]) -> im
         let choice = choices.iter().find(|(name, ..)| *name == found);
         choice.map(|(.., value)| value.clone()).ok_or("no such choice")
     })
+}
+
+/// The pose in the order of a model's joints, which have these names.
+pub fn ordered(names: &[String], character: &Character, pose: &Pose) -> Result<Pose> {
+    let mut ordered = Vec::new();
+    for name in names {
+        match character.joint(name) {
+            Some(joint) => ordered.push(pose[joint]),
+            None => bail!("the model wants joint {name}, the character has no joint of that name"),
+        }
+    }
+    Ok(ordered)
 }
 
 /// Reads a model file, naming it in errors.

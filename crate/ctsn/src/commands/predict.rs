@@ -16,7 +16,8 @@ use std::time::Instant;
 /// Predict cloth for a file of poses
 ///
 /// POSES holds the tensor `pose.joints` [P, J, 3, 4]: row-major world transforms of the model's joints, in metres.
-/// OUT receives `positions` and `normals` [P, n, 3], in world space. The times that are told are those of whole
+/// OUT receives `positions` and `normals` [P, n, 3], in world space: of the cloth, or of the mesh that rides on it where
+/// the model has one. The times that are told are those of whole
 /// predictions; the first one's has the reading of the model in it.
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -66,7 +67,8 @@ impl Predicted {
 pub fn run(arguments: &Arguments) -> Result<()> {
     let start = Instant::now();
     let model = model(&arguments.model)?;
-    let (joints, n) = (model.sizes.joints, model.sizes.vertices);
+    let n = model.ride.as_ref().map_or(model.sizes.vertices, |ride| ride.corners.len() / 3);
+    let joints = model.sizes.joints;
     let poses = file::tensors(&arguments.poses)?;
     let shape = [None, Some(joints), Some(3), Some(4)];
     let (poses, shape) = poses.f32("pose.joints", &shape).with_context(|| arguments.poses.display().to_string())?;
@@ -103,7 +105,7 @@ fn cpu<'a>(model: HostModel, poses: impl Iterator<Item = &'a [f32]>, arguments: 
     let mut predicted = Predicted::new();
     for pose in poses {
         predictor.predict_row_major(pose, arguments.streams)?;
-        predicted.push(predictor.positions(), predictor.normals());
+        predicted.push(predictor.shown_positions(), predictor.shown_normals());
     }
     Ok(predicted)
 }
@@ -116,7 +118,7 @@ fn gpu<'a>(model: &HostModel, poses: impl Iterator<Item = &'a [f32]>, streams: S
     let mut predicted = Predicted::new();
     for pose in poses {
         predictor.predict_row_major(pose, streams)?;
-        let prediction = block_on(predictor.read())?;
+        let prediction = block_on(predictor.read_shown())?;
         predicted.push(&prediction.positions, &prediction.normals);
     }
     Ok(predicted)

@@ -1,13 +1,14 @@
 //! `ctsn render`: a picture of a dressed character, for people to judge.
 
-use super::model;
+use super::{model, ordered};
 use crate::pictures;
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result};
 use ctsn_core::cpu::Level;
+use ctsn_core::model::HostModel;
 use ctsn_core::{Predictor, Streams};
 use ctsn_rig::gltf;
 use ctsn_rig::path::body_frame;
-use ctsn_rig::{Character, Pose, joints, vertices};
+use ctsn_rig::{joints, vertices};
 use ctsn_train::dataset::{Sample, Setup, pose_path};
 use std::path::PathBuf;
 
@@ -62,30 +63,24 @@ pub fn run(arguments: &Arguments) -> Result<()> {
             let path = pose_path(folder, index, arguments.frame);
             let sample = Sample::read(&path, model.sizes.joints, model.sizes.vertices)?;
             let back = body_frame(&character, pose).inverse();
-            vertices(&sample.truth).into_iter().map(|vertex| back.transform_point3(vertex)).collect()
+            let truth = shown(&model, &sample.truth);
+            vertices(&truth).into_iter().map(|vertex| back.transform_point3(vertex)).collect()
         }
         None => {
             let streams = if arguments.skinning { Streams::None } else { Streams::Both };
             let pose = ordered(&model.rig.joints, &character, pose)?;
             let mut predictor = Predictor::from_model(model.clone(), Level::new());
             predictor.predict_row_major(&joints(&pose), streams)?;
-            vertices(predictor.positions())
+            vertices(predictor.shown_positions())
         }
     };
-    let triangles = model.triangles.as_chunks::<3>().0;
+    let triangles = model.ride.as_ref().map_or(&model.triangles, |ride| &ride.triangles).as_chunks::<3>().0;
     pictures::render_dressed(&character, pose, Some((&cloth, triangles)), &arguments.output)?;
     println!("{}", arguments.output.display());
     Ok(())
 }
 
-/// The pose in the order of the model's joints.
-fn ordered(names: &[String], character: &Character, pose: &Pose) -> Result<Pose> {
-    let mut ordered = Vec::new();
-    for name in names {
-        match character.joint(name) {
-            Some(joint) => ordered.push(pose[joint]),
-            None => bail!("the model wants joint {name}, the character has no joint of that name"),
-        }
-    }
-    Ok(ordered)
+/// What is drawn of cloth at `positions` [n, 3]: the cloth, or what rides on it.
+fn shown(model: &HostModel, positions: &[f32]) -> Vec<f32> {
+    model.ride.as_ref().map_or(positions.to_vec(), |ride| ride.lay(positions, &model.triangles))
 }

@@ -2,7 +2,7 @@
 
 use super::{bar, file_name, model, remaining};
 use anyhow::{Result, bail};
-use ctsn_cloth::garment::{self, Fitted};
+use ctsn_cloth::garment::{self, Fitted, Resample};
 use ctsn_cloth::simulate::{Material, Settings};
 use ctsn_rig::gltf;
 use ctsn_rig::{Character, Garment, SkinWeights, SkinnedMesh};
@@ -66,6 +66,10 @@ pub struct Options {
     /// Clip to use, by name; may be given several times. Default: all
     #[arg(long = "clip")]
     pub clips: Vec<String>,
+    /// Simulate on an even mesh made from the garment's, which then rides on it to be drawn: auto (where its own is
+    /// coarser than 15 mm, uneven, or of several layers), never, or the length of an edge in mm
+    #[arg(long, value_name = "WHEN", default_value_t = Resample::Auto)]
+    pub resample: Resample,
     #[arg(long, default_value = "cotton", help = format!("Material of the cloth: {}", Material::names()))]
     pub material: String,
     /// Simulate this many poses a second time, every joint turned by half a degree, to measure the noise of the truth
@@ -93,7 +97,7 @@ pub fn along(character: &Character, arguments: &Arguments, until: Option<Instant
     let Arguments { options, output, shard, .. } = arguments;
     let material = Material::named(&options.material)?;
     let mut character = character.clone();
-    let garment = fitted(&arguments.garment, &mut character)?;
+    let garment = fitted(&arguments.garment, &mut character, options.resample)?;
     let character = &character;
     let teacher = options.from.as_deref().map(model).transpose()?;
     let names = [file_name(&arguments.character), file_name(&arguments.garment)];
@@ -123,8 +127,8 @@ pub fn along(character: &Character, arguments: &Arguments, until: Option<Instant
 }
 
 /// Reads a garment, completes the body under it, and says what was mended and what may be wrong.
-fn fitted(path: &Path, character: &mut Character) -> Result<Garment> {
-    let Fitted { garment, mended, warnings } = garment::load(path, character)?;
+fn fitted(path: &Path, character: &mut Character, resample: Resample) -> Result<Garment> {
+    let Fitted { garment, mended, warnings } = garment::load(path, character, resample)?;
     mended.iter().for_each(|mend| eprintln!("  {}: mended: {mend}", path.display()));
     warnings.iter().for_each(|warning| eprintln!("  {}: {warning}", path.display()));
     Ok(garment)
@@ -134,7 +138,7 @@ fn fitted(path: &Path, character: &mut Character) -> Result<Garment> {
 pub fn unsimulated(character: &Path, garment: &Path) -> Result<Dataset> {
     let names = [file_name(character), file_name(garment)];
     let mut character = gltf::read_character(character, RATE)?;
-    let cloth = fitted(garment, &mut character)?;
+    let cloth = fitted(garment, &mut character, Resample::Auto)?;
     println!("{} on {}: {} vertices; draping it", names[1], names[0], cloth.mesh.positions.len());
     let request = Request {
         character: &character,

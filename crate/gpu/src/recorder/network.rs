@@ -2,9 +2,9 @@
 
 use super::{Id, IndexId, Record, Recorder};
 use crate::pack::{self, whole};
-use ctsn_core::cpu::network::polish;
+use ctsn_core::cpu::network::{polish, ride};
 use ctsn_core::operation::{
-    Activation, Attend, Blend, BodyFrame, Features, Linear, Normals, Polish, Skin, Space, Surface,
+    Activation, Attend, Blend, BodyFrame, Features, Linear, Normals, Polish, Pull, Ride, Skin, Space, Surface,
 };
 use ctsn_core::pose::Frame;
 use ctsn_shaders as shaders;
@@ -146,21 +146,37 @@ impl Record for Attend<Id, Id, IndexId> {
     }
 }
 
-impl Record for Polish<Id, Id, IndexId> {
+impl Record for Pull<Id, Id, IndexId> {
     fn record(self, recorder: &mut Recorder) {
-        let Self { offsets, neighbours, squares, share, first, current, other } = self;
-        let n = recorder.length(current) / 3;
+        let Self { offsets, neighbours, squares, positions, pulls } = self;
+        let n = recorder.length(positions) / 3;
         let operands = [
             recorder.indexed(offsets),
             recorder.indexed(neighbours),
             recorder.pack(("squares", squares.0), |it| it.values(squares).to_vec()),
-            recorder.rows(share, 1, 4),
-            recorder.rows(current, 3, 3),
-            recorder.rows(other, 3, 3),
+            recorder.rows(positions, 3, 3),
+            recorder.rows(pulls, 3, 3),
         ];
+        recorder.dispatch(&shaders::PULL, shaders::Pull { vertices: n as u32 }, &operands, [n, 1], pulls);
+    }
+}
+
+impl Record for Polish<Id, Id, IndexId> {
+    fn record(self, recorder: &mut Recorder) {
+        let Self { offsets, neighbours, share, first, pulls, moves, positions } = self;
+        let n = recorder.length(positions) / 3;
+        let operands = [
+            recorder.indexed(offsets),
+            recorder.indexed(neighbours),
+            recorder.rows(share, 1, 4),
+            recorder.rows(pulls, 3, 3),
+            recorder.rows(moves, 3, 3),
+            recorder.rows(positions, 3, 3),
+        ];
+        let (own, others) = (polish::RATE * polish::OWN, polish::RATE * (1.0 - polish::OWN));
         let momentum = if first { 0.0 } else { polish::MOMENTUM };
-        let params = shaders::Polish { vertices: n as u32, rate: polish::RATE, momentum };
-        recorder.dispatch(&shaders::POLISH, params, &operands, [n, 1], other);
+        let params = shaders::Polish { vertices: n as u32, own, others, momentum };
+        recorder.dispatch(&shaders::POLISH, params, &operands, [n, 1], positions);
     }
 }
 
@@ -177,6 +193,22 @@ impl Record for Normals<Id, Id, IndexId> {
         ];
         let params = shaders::Normals { vertices: n as u32 };
         recorder.dispatch(&shaders::NORMALS, params, &operands, [n, 1], normals);
+    }
+}
+
+impl Record for Ride<Id, Id, IndexId> {
+    fn record(self, recorder: &mut Recorder) {
+        let Self { corners, coordinates, positions, normals, riders } = self;
+        let operands = [
+            recorder.indexed(corners),
+            recorder.rows(coordinates, 4, 4),
+            recorder.rows(positions, 3, 3),
+            recorder.rows(normals, 3, 3),
+            recorder.rows(riders, 3, 3),
+        ];
+        let count = recorder.length(riders) / 3;
+        let params = shaders::Ride { riders: count as u32, least: ride::LEAST };
+        recorder.dispatch(&shaders::RIDE, params, &operands, [count, 1], riders);
     }
 }
 

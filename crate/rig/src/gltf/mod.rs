@@ -6,6 +6,7 @@ mod colour;
 mod file;
 mod look;
 mod nodes;
+mod pack;
 mod part;
 mod skeleton;
 mod unpack;
@@ -14,6 +15,7 @@ mod weld;
 mod write;
 
 pub use look::Look;
+pub use pack::pack;
 pub use weld::Source;
 pub use write::{Appearance, write_character, write_garment};
 
@@ -244,7 +246,9 @@ fn garment_of(file: &File, scale: f64, kept: impl Fn(usize) -> bool) -> Read<(Ga
     if welded.mesh.triangles.is_empty() {
         return Err("holds no garment: no mesh has a triangle with an area".to_string());
     }
-    Ok((Garment { mesh: welded.mesh, surface: welded.surface, pins: welded.pins }, welded.source))
+    let own = file.document.as_json().asset.generator.as_deref() == Some(write::GENERATOR);
+    let source = Source { own, ..welded.source };
+    Ok((Garment { mesh: welded.mesh, surface: welded.surface, pins: welded.pins, drawn: None }, source))
 }
 
 #[cfg(test)]

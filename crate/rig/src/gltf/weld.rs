@@ -59,6 +59,8 @@ pub struct Source {
     pub unused: Vec<u32>,
     /// Triangles without an area, by vertices of the file.
     pub degenerate: Vec<[u32; 3]>,
+    /// Whether the file is one that [`write_garment`](super::write_garment) wrote.
+    pub own: bool,
 }
 
 impl Soup {
@@ -137,7 +139,7 @@ impl Soup {
             weights: kept.iter().map(|&at| self.weights[at].clone()).collect(),
             surface: Surface { vertex, uv, triangles: self.triangles, colour: self.colour },
             pins,
-            source: Source { numbers, unused: self.unused, degenerate: flat },
+            source: Source { numbers, unused: self.unused, degenerate: flat, own: false },
         }
     }
 }

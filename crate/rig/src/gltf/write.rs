@@ -16,6 +16,9 @@ const F32: u32 = 5126;
 const U32: u32 = 5125;
 const U16: u32 = 5123;
 
+/// By this a file of ours is known.
+pub(super) const GENERATOR: &str = "ctsn";
+
 /// How a surface without colours of its own looks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Appearance {
@@ -84,7 +87,7 @@ pub fn write_garment(path: &Path, garment: &Garment) -> Result<()> {
     let mut file = Writer::default();
     let mut primitives = file.primitives(&garment.mesh, &garment.surface, &Appearance::default(), None);
     if !garment.pins.is_empty() {
-        let Garment { mesh, surface, pins } = garment;
+        let Garment { mesh, surface, pins, .. } = garment;
         let plain = surface.triangles.is_empty();
         let vertex = if plain { (0..mesh.positions.len() as u32).collect() } else { surface.vertex.clone() };
         let pinned = vertex.iter().map(|at| f64::from(u8::from(pins.contains(at))));
@@ -238,7 +241,7 @@ impl Writer {
     }
 
     fn save(mut self, path: &Path, mut document: Value) -> Result<()> {
-        document["asset"] = json!({ "version": "2.0", "generator": "ctsn" });
+        document["asset"] = json!({ "version": "2.0", "generator": GENERATOR });
         document["accessors"] = json!(std::mem::take(&mut self.accessors));
         document["bufferViews"] = json!(std::mem::take(&mut self.views));
         document["materials"] = json!(std::mem::take(&mut self.materials));

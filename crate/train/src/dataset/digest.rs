@@ -1,6 +1,6 @@
 //! Numbers by which files remember what they were made of: xxHash64, the same with every compiler and on every machine.
 
-use super::{Sample, Setup, to_json};
+use super::{Drawn, Sample, Setup, to_json};
 use crate::Result;
 use std::hash::Hasher;
 use twox_hash::XxHash64;
@@ -16,6 +16,14 @@ pub fn fingerprint(setup: &Setup, samples: &[&Sample]) -> Result<u64> {
     hasher.write(to_json(&setup.description)?.as_bytes());
     for values in [&setup.triangles, &setup.body_triangles, &setup.surface.vertex, &setup.surface.triangles] {
         list(&mut hasher, values.iter().map(|value| value.to_le_bytes()));
+    }
+    if let Some(Drawn { surface, ride }) = &setup.drawn {
+        for values in [&surface.vertex, &surface.triangles, &ride.corners] {
+            list(&mut hasher, values.iter().map(|value| value.to_le_bytes()));
+        }
+        for values in [&surface.uv, &ride.coordinates] {
+            list(&mut hasher, values.iter().map(|value| value.to_le_bytes()));
+        }
     }
     for row in &setup.body_weights {
         list(&mut hasher, row.iter().map(|(joint, _)| (*joint as u64).to_le_bytes()));
@@ -47,6 +55,7 @@ mod tests {
             template: vec![0.5, 1.5, -2.0],
             triangles: vec![0, 0, 0],
             surface: Surface::default(),
+            drawn: None,
             body: vec![],
             body_triangles: vec![],
             body_weights: vec![vec![(1, 0.25)]],

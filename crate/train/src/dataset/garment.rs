@@ -20,6 +20,7 @@ impl Setup {
                 ..Surface::default()
             },
             pins: self.description.settings.attached.clone(),
+            drawn: None,
         }
     }
 

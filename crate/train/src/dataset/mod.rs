@@ -3,6 +3,7 @@
 //! copying.
 
 mod digest;
+mod drawn;
 mod garment;
 mod nearest;
 mod same;
@@ -13,6 +14,7 @@ mod split;
 use crate::{Error, Result};
 use ctsn_core::file::Tensors;
 pub use digest::{digest, fingerprint};
+pub use drawn::{Drawn, stored_surface};
 pub(crate) use sample::paths;
 pub use sample::{Record, Sample, mixed_path, pose_path, twin_path};
 use serde::{Deserialize, Serialize};

@@ -1,13 +1,13 @@
 //! What the poses of a dataset have in common: cloth, body and joints, and what the simulation was told.
 //! `setup.safetensors`.
 
-use super::{json, to_json};
+use super::{Drawn, json, to_json};
 use crate::{Error, Result};
 use ctsn_cloth::simulate::{Fabric, Settings};
 use ctsn_core::file::{Tensor, Tensors};
 use ctsn_core::model::Surface;
 use ctsn_rig::file::{tensors, write};
-use ctsn_rig::{Character, Joint, Mesh, SkinWeights, SkinnedMesh, Surface as Drawn};
+use ctsn_rig::{Character, Joint, Mesh, SkinWeights, SkinnedMesh};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
@@ -54,6 +54,8 @@ pub struct Setup {
     pub triangles: Vec<u32>,
     /// What is drawn of the cloth.
     pub surface: Surface,
+    /// What is drawn in its place and rides on it.
+    pub drawn: Option<Drawn>,
     /// Body vertices in the canonical pose [b, 3].
     pub body: Vec<f32>,
     /// Body triangles.
@@ -96,6 +98,9 @@ impl Setup {
             ("body.triangles".to_owned(), triples(&self.body_triangles)),
             ("body.weights".to_owned(), Tensor::f32(&[self.body_weights.len(), joints], &dense)),
         ]);
+        if let Some(drawn) = &self.drawn {
+            drawn.write(&mut file);
+        }
         write(&setup_path(folder), &file.to_bytes())
     }
 
@@ -144,6 +149,7 @@ impl Setup {
                 triangles: file.u32("draw.triangles", &[None, Some(3)], vertex.len())?,
                 vertex,
             },
+            drawn: Drawn::read(file, shape[0])?,
             body_triangles: file.u32("body.triangles", &[None, Some(3)], body_shape[0])?,
             body_weights: dense.chunks_exact(joints.max(1)).map(sparse).collect(),
             description,
@@ -175,7 +181,7 @@ impl Setup {
                 },
                 weights: self.body_weights.clone(),
             },
-            surface: Drawn::default(),
+            surface: Default::default(),
             clips: Vec::new(),
             metres_per_unit: 1.0,
             parts: Default::default(),

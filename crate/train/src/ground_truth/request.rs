@@ -2,7 +2,7 @@
 
 use super::Shard;
 use crate::dataset::digest;
-use crate::dataset::{Description, Setup};
+use crate::dataset::{Description, Drawn, Setup, stored_surface};
 use ctsn_cloth::simulate::{Fabric, Material, Settings};
 use ctsn_core::model::{HostModel, Storage, Surface};
 use ctsn_rig::{Character, Garment, SkinWeights, numbers, row_major};
@@ -36,19 +36,14 @@ impl Request<'_> {
     pub(super) fn setup(&self) -> Setup {
         let (character, garment) = (self.character, self.garment);
         let rest = numbers(&garment.mesh.positions);
-        let uv = garment.surface.uv.iter().flat_map(|uv| uv.to_array().map(|value| value as f32)).collect();
-        let surface = Surface {
-            vertex: garment.surface.vertex.clone(),
-            uv,
-            triangles: garment.surface.triangles.as_flattened().to_vec(),
-        };
         Setup {
             description: self.description(),
             garment: rest.clone(),
             template: rest,
             triangles: garment.mesh.triangles.as_flattened().to_vec(),
             // A garment without texture coordinates is drawn as its cloth mesh.
-            surface: if garment.surface.uv.is_empty() { Surface::default() } else { surface },
+            surface: if garment.surface.uv.is_empty() { Surface::default() } else { stored_surface(&garment.surface) },
+            drawn: garment.drawn.as_ref().map(Drawn::new),
             body: numbers(&character.body.mesh.positions),
             body_triangles: character.body.mesh.triangles.as_flattened().to_vec(),
             body_weights: character.body.weights.iter().map(stored).collect(),

@@ -67,6 +67,7 @@ pub fn initial(setup: &Setup, train: &[&Sample], architecture: Architecture, see
     let weights = weights::smooth(setup, &graph, &nearest)?;
     let (carried, heard) = heard(setup, &weights);
     let parts = limbs::parts(&setup.description.parents, &carried, &heard);
+    let drawn = setup.drawn.as_ref();
     Ok(HostModel {
         sizes: Sizes { vertices: n, joints, embedding, basis, features, heads },
         reference: reference(setup, &graph, &body_frames)?,
@@ -81,7 +82,8 @@ pub fn initial(setup: &Setup, train: &[&Sample], architecture: Architecture, see
         vertex_mlp: mlp(&[features, VERTEX, basis], &mut rng),
         mesh_basis: small(n * 3 * basis, &mut rng),
         mesh_stream: true,
-        surface: Some(setup.surface.clone()).filter(|surface| !surface.vertex.is_empty()),
+        surface: Some(drawn.map_or(&setup.surface, |drawn| &drawn.surface).clone()).filter(|it| !it.vertex.is_empty()),
+        ride: drawn.map(|drawn| drawn.ride.clone()),
         cut: None,
         body: None,
         training: None,

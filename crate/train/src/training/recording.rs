@@ -40,8 +40,7 @@ impl Recording {
         if let (Some(cut), Streams::Both) = (&recorded.cut, streams) {
             let Graph { offsets, neighbours } = recorded.graph;
             let at = Recorded { offsets, neighbours, squares: cut.squares };
-            activations.positions =
-                tape.polish(at, &activations.positions, 3 * model.sizes.vertices, cut.steps.next_multiple_of(2));
+            activations.positions = tape.polish(at, &activations.positions, 3 * model.sizes.vertices, cut.steps);
         }
         (Self { tape, activations, coarse }, shared, learning)
     }

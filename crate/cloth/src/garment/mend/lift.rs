@@ -3,8 +3,8 @@
 
 use crate::garment::check::{Findings, INWARDS, Outside, Place, inside, inwards, list, mistaken};
 use crate::simulate::{Elements, untangle};
-use ctsn_rig::Garment;
 use ctsn_rig::gltf::Source;
+use ctsn_rig::{Drawn, Garment};
 use glam::DVec3;
 
 /// Cloth deeper than the first is lifted until it is as far outside as the second, in body extents: 1 and 2 mm of a
@@ -32,6 +32,7 @@ pub(in crate::garment) fn place(
     if share > INWARDS {
         said.push(format!("turned right side out: {:.0} % of its area looked at the body", 100.0 * share));
         garment.mesh.triangles.iter_mut().chain(&mut garment.surface.triangles).for_each(|face| face.swap(1, 2));
+        garment.drawn.iter_mut().for_each(Drawn::turn);
     }
     let mut deep = Findings::default();
     inside(&places, outside.body, source, &mut deep);

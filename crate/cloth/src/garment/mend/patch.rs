@@ -22,7 +22,7 @@ pub(super) struct Patch {
 
 impl Patch {
     pub fn new(garment: &Garment, source: &Source) -> Patch {
-        let Garment { mesh, surface, pins } = garment;
+        let Garment { mesh, surface, pins, .. } = garment;
         // The mesh has the surface's triangles in their order, without those that have no area.
         let mut drawn = surface.triangles.iter();
         let vertex = |drawn: &[u32; 3]| drawn.map(|corner| surface.vertex[corner as usize]);
@@ -78,8 +78,18 @@ impl Patch {
         let surface =
             if before.surface.vertex.is_empty() { Surface::default() } else { self.draw(&before.surface, &new) };
         let pins = (0..used.len() as u32).filter(|vertex| self.pinned[used[*vertex as usize] as usize]).collect();
+        let drawn = before.drawn.clone().map(|mut drawn| {
+            // What rode on a vertex that is gone rides on the nearest one that is left.
+            let near = |place: DVec3| {
+                let far = |v: &u32| self.positions[*v as usize].distance_squared(place);
+                used.iter().copied().min_by(|a, b| far(a).total_cmp(&far(b))).map_or(0, |old| new[&old])
+            };
+            let now = |old: u32| new.get(&old).copied().unwrap_or_else(|| near(before.mesh.positions[old as usize]));
+            drawn.riders.iter_mut().for_each(|rider| rider.corners = rider.corners.map(now));
+            drawn
+        });
         let numbers = used.iter().map(|vertex| self.numbers[*vertex as usize]).collect();
-        (Garment { mesh, surface, pins }, numbers)
+        (Garment { mesh, surface, pins, drawn }, numbers)
     }
 
     /// The surface that draws the faces: a drawn vertex for each pair of an old one and a vertex of the cloth.

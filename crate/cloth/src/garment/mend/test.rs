@@ -3,7 +3,7 @@
 
 use crate::garment::check::{Fitted, Outside, SLIVER, fit_beside};
 use crate::garment::test::person;
-use crate::garment::{Cut, Kind, fit, quality, rehearse, shell};
+use crate::garment::{Cut, Kind, Resample, fit, quality, rehearse, shell};
 use crate::simulate::{Elements, Material, Settings, Simulator};
 use ctsn_rig::gltf::Source;
 use ctsn_rig::mesh::triangle::least_angle;
@@ -23,7 +23,7 @@ fn cut(kind: Kind) -> Garment {
 
 fn fitted(garment: Garment) -> crate::Result<Fitted> {
     let numbers = (100..100 + garment.mesh.positions.len() as u32).collect();
-    fit_beside(&OUTSIDE, garment, Source { numbers, ..Source::default() }, Vec::new())
+    fit_beside(&OUTSIDE, garment, Source { numbers, ..Source::default() }, Resample::Never, Vec::new())
 }
 
 /// The sound garment after `spoil`, mended; what was said must hold all words.
@@ -180,11 +180,11 @@ fn plain(garment: &Garment) -> Source {
 #[test]
 fn a_body_is_made_where_skin_is_missing() {
     let mut sound = PERSON.clone();
-    fit(&mut sound, SHIRT.clone(), plain(&SHIRT)).expect("a fit");
+    fit(&mut sound, SHIRT.clone(), plain(&SHIRT), Resample::Never).expect("a fit");
     assert_eq!(sound.body, PERSON.body, "nothing was missing");
     let mut hollow = hollow();
     let before = hollow.body.clone();
-    let fitted = fit(&mut hollow, SHIRT.clone(), plain(&SHIRT)).expect("a fit");
+    let fitted = fit(&mut hollow, SHIRT.clone(), plain(&SHIRT), Resample::Never).expect("a fit");
     let said = &fitted.mended[0];
     for word in ["no skin", "chest", "arm.l", "--body"] {
         assert!(said.contains(word), "{word}: {said}");
@@ -220,7 +220,7 @@ fn plugs_that_hide_a_missing_body_are_opened() {
     }
     assert!(bag.mesh.triangles.len() > SHIRT.mesh.triangles.len() + 30);
     let numbers = plain(&bag);
-    let fitted = fit(&mut hollow(), bag, numbers).expect("a fit");
+    let fitted = fit(&mut hollow(), bag, numbers, Resample::Never).expect("a fit");
     assert!(fitted.mended[0].contains("3 openings"), "{:?}", fitted.mended);
     assert_eq!(fitted.garment.mesh.triangles.len(), SHIRT.mesh.triangles.len());
 }

@@ -63,7 +63,7 @@ fn a_garment_survives_writing_and_reading() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("garment.glb");
     let source = tube();
-    let garment = Garment { mesh: source.body.mesh, surface: source.surface, pins: Vec::new() };
+    let garment = Garment { mesh: source.body.mesh, surface: source.surface, ..Garment::default() };
     write_garment(&path, &garment).unwrap();
     let (read, _) = read_garment(&path, 0.5).unwrap();
     assert_eq!(read.mesh.triangles.len(), garment.mesh.triangles.len());

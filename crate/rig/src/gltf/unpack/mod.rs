@@ -123,7 +123,7 @@ impl Container {
 
 /// The JSON of a file, and the binary chunk of a GLB. Checks the stated length of a GLB first: the `gltf` crate
 /// subtracts its header from that.
-fn split(bytes: &[u8]) -> Read<(Value, Option<Vec<u8>>)> {
+pub(super) fn split(bytes: &[u8]) -> Read<(Value, Option<Vec<u8>>)> {
     let refuse = |error: &dyn std::fmt::Display| format!("not a glTF: {error}");
     if let Some(header) = bytes.strip_prefix(b"glTF") {
         let stated = header.get(4..8).map(|length| length.iter().rev().fold(0, |sum, &byte| sum << 8 | byte as usize));
@@ -142,11 +142,11 @@ fn split(bytes: &[u8]) -> Read<(Value, Option<Vec<u8>>)> {
 }
 
 /// A list of the JSON; empty where there is none.
-fn list(json: &Value, key: &str) -> Vec<Value> {
+pub(super) fn list(json: &Value, key: &str) -> Vec<Value> {
     json[key].as_array().cloned().unwrap_or_default()
 }
 
 /// A whole number of the JSON; 0 where there is none.
-fn size(json: &Value, key: &str) -> usize {
+pub(super) fn size(json: &Value, key: &str) -> usize {
     json[key].as_u64().map_or(0, |number| usize::try_from(number).unwrap_or(usize::MAX))
 }

@@ -108,6 +108,7 @@ fn tiny() -> (HostModel, Setup, Vec<Sample>) {
         template: model.rest.clone(),
         triangles: model.triangles.clone(),
         surface: Default::default(),
+        drawn: None,
         body: model.reference.rest.clone(),
         body_triangles: Vec::new(),
         body_weights: vec![vec![(0, 0.5), (1, 0.3), (2, 0.2)]; model.sizes.vertices],

@@ -1,0 +1,91 @@
+//! What packing changes: the cloth of a packed model beside that of the model, over poses.
+
+use super::BOUND;
+use anyhow::{Result, ensure};
+use ctsn_core::cpu::Level;
+use ctsn_core::file::Tensors;
+use ctsn_core::model::HostModel;
+use ctsn_core::{Predictor, Streams};
+use ctsn_rig::{Character, joints};
+
+/// How far two predictions are apart, polish and repair included.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Difference {
+    /// Mean distance of a vertex, metres.
+    pub distance: f64,
+    /// Mean angle of its normal, degrees.
+    pub angle: f64,
+    /// Greatest distance of any vertex in any pose, metres.
+    pub greatest: f64,
+}
+
+impl Difference {
+    /// Whether it is at most a share of [`BOUND`].
+    pub fn within(&self, share: f64) -> bool {
+        self.distance <= share * BOUND.0 && self.angle <= share * BOUND.1
+    }
+}
+
+/// Poses, and what the model predicts in them.
+pub struct Trial {
+    poses: Vec<Vec<f32>>,
+    truth: Vec<[Vec<f32>; 2]>,
+    /// Root mean square of what each basis matrix is multiplied by: skeleton stream [m], mesh stream [k].
+    pub coefficients: [Vec<f32>; 2],
+}
+
+impl Trial {
+    /// Of `model` in at most `most` poses, spread evenly over the clips of `character`.
+    pub fn new(model: HostModel, character: &Character, most: usize) -> Result<Self> {
+        let all: Vec<_> = character.clips.iter().flat_map(|clip| &clip.poses).collect();
+        ensure!(
+            !all.is_empty(),
+            "the character has no clip: the poses of one tell what packing changes; see ctsn motion"
+        );
+        let chosen = all.iter().step_by(all.len().div_ceil(most));
+        let ordered = chosen.map(|pose| Ok(joints(&crate::commands::ordered(&model.rig.joints, character, pose)?)));
+        let poses = ordered.collect::<Result<Vec<_>>>()?;
+        let mut squares = [vec![0.0; model.sizes.embedding], vec![0.0; model.sizes.basis]];
+        let (mut predictor, mut truth) = (Predictor::from_model(model, Level::new()), Vec::new());
+        for pose in &poses {
+            predictor.predict_row_major(pose, Streams::Both)?;
+            truth.push([predictor.positions().to_vec(), predictor.normals().to_vec()]);
+            let a = predictor.activations();
+            for (squares, values) in squares.iter_mut().zip([a.embedding.last(), a.vertex_mlp.last()]) {
+                let values = values.map_or(&[][..], |values| values);
+                let (width, rows) = (squares.len(), values.len() / squares.len().max(1) * poses.len());
+                values.iter().enumerate().for_each(|(i, value)| squares[i % width] += value * value / rows as f32);
+            }
+        }
+        Ok(Self { poses, truth, coefficients: squares.map(|list| list.into_iter().map(f32::sqrt).collect()) })
+    }
+
+    /// How many poses there are.
+    pub fn poses(&self) -> usize {
+        self.poses.len()
+    }
+
+    /// What the model of `file` predicts otherwise.
+    pub fn difference(&self, file: &Tensors) -> Result<Difference> {
+        let mut predictor = Predictor::from_model(HostModel::read(file)?, Level::new());
+        let (mut sum, mut count) = (Difference::default(), 0.0);
+        for (pose, [positions, normals]) in self.poses.iter().zip(&self.truth) {
+            predictor.predict_row_major(pose, Streams::Both)?;
+            for (found, wanted) in predictor.positions().as_chunks::<3>().0.iter().zip(positions.as_chunks::<3>().0) {
+                let apart = apart(found, wanted);
+                sum.distance += apart;
+                sum.greatest = sum.greatest.max(apart);
+                count += 1.0;
+            }
+            for (found, wanted) in predictor.normals().as_chunks::<3>().0.iter().zip(normals.as_chunks::<3>().0) {
+                // By the chord: the cosine of a small angle has lost it.
+                sum.angle += (2.0 * (apart(found, wanted) / 2.0).min(1.0).asin()).to_degrees();
+            }
+        }
+        Ok(Difference { distance: sum.distance / count, angle: sum.angle / count, greatest: sum.greatest })
+    }
+}
+
+fn apart(a: &[f32; 3], b: &[f32; 3]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| f64::from(a - b).powi(2)).sum::<f64>().sqrt()
+}

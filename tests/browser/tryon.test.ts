@@ -1,0 +1,177 @@
+// What a visitor does on the try-on page: dress, drag, drop, share, by mouse, by keyboard and on a phone.
+import { cpSync, mkdtempSync, readFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import path from 'node:path';
+import { fileURLToPath } from 'node:url';
+import type { Page } from 'playwright-core';
+import { afterAll, afterEach, beforeAll, expect, test } from 'vitest';
+import { withServer } from '../../scripts/page.mjs';
+import { ask, out, Site } from './page.js';
+import { difference } from './safetensors.js';
+
+const file = (name: string) => fileURLToPath(new URL(`../../www/${name}`, import.meta.url));
+const patience = { timeout: 60_000 };
+let site: Site;
+beforeAll(async () => (site = await Site.open()));
+afterEach(() => site.leave());
+afterAll(() => site?.close());
+
+const open = (page: Page, room: string) => page.locator('summary').filter({ hasText: room }).click();
+const capture = (page: Page) => ask(page, (demo) => demo.capture(), null);
+const confidence = async (page: Page) => Number.parseFloat((await page.textContent('#confidence'))!);
+
+/** Where a joint of a captured pose is. */
+const jointAt = ({ joints, pose }: Awaited<ReturnType<typeof capture>>, name: string) =>
+  pose.slice(16 * joints.indexOf(name) + 12, 16 * joints.indexOf(name) + 15);
+
+test('a hand, a foot and the hip are dragged; the cloth follows, and confidence tells of a wild pose', async () => {
+  const { page, complaints } = await site.visit('?pose=idle:1');
+  const before = await capture(page);
+  await open(page, 'Pose');
+  await page.getByLabel('Pose it yourself').check();
+  const drag = async (name: string, x: number, y: number) => {
+    const box = (await page.getByRole('button', { name: `${name}:` }).boundingBox())!;
+    const [fromX, fromY] = [box.x + box.width / 2, box.y + box.height / 2];
+    await page.mouse.move(fromX, fromY);
+    await page.mouse.down();
+    await page.mouse.move(fromX + x, fromY + y, { steps: 2 });
+    await page.mouse.up();
+  };
+  await drag('Left hand', 40, -120);
+  const raised = await capture(page);
+  expect(jointAt(raised, 'LeftHand')[1]! - jointAt(before, 'LeftHand')[1]!).toBeGreaterThan(0.2);
+  expect(difference(jointAt(raised, 'RightHand'), jointAt(before, 'RightHand'))).toBeLessThan(1e-3);
+  expect(difference(raised.positions, before.positions)).toBeGreaterThan(0.02);
+  await drag('Hip', 0, 30);
+  const crouched = await capture(page);
+  expect(jointAt(crouched, 'Hips')[1]!).toBeLessThan(jointAt(raised, 'Hips')[1]! - 0.03);
+  // Feet stay where they stand.
+  expect(difference(jointAt(crouched, 'LeftFoot'), jointAt(raised, 'LeftFoot'))).toBeLessThan(0.03);
+  // By the keyboard, too.
+  await page.getByRole('button', { name: 'Right hand:' }).focus();
+  for (let i = 0; i < 4; i++) await page.keyboard.press('ArrowUp');
+  const pressed = await capture(page);
+  expect(jointAt(pressed, 'RightHand')[1]!).toBeGreaterThan(jointAt(crouched, 'RightHand')[1]! + 0.02);
+  expect(await page.locator('#clip').inputValue()).toBe('');
+  expect(await confidence(page)).toBeGreaterThan(0);
+  await page.screenshot({ path: `${out}/posed.png` });
+  // The head between the knees is nothing that was ever learned.
+  await drag('Head', 60, 260);
+  await drag('Left foot', 150, -320);
+  await drag('Right hand', 300, 200);
+  await expect.poll(() => confidence(page), patience).toBeLessThan(100);
+  expect(complaints).toEqual([]);
+});
+
+test('what is dropped is shown; what is broken is told in words, and what was shown stays', async () => {
+  const { page, complaints } = await site.visit('?pose=idle:1');
+  const give = (...files: { name: string; buffer: Buffer }[]) =>
+    page.locator('#own').setInputFiles(files.map((one) => ({ ...one, mimeType: 'application/octet-stream' })));
+  const alert = page.getByRole('alert');
+  const told = async (text: RegExp) => {
+    await expect.poll(() => page.textContent('#failure-text'), patience).toMatch(text);
+    await alert.getByRole('button', { name: 'Close' }).click();
+    expect(await alert.isVisible()).toBe(false);
+  };
+  const shirt = { name: 'my shirt.safetensors', buffer: readFileSync(file('public/tshirt.safetensors')) };
+  const man = { name: 'me.glb', buffer: readFileSync(file('public/andy.glb')) };
+  await give({ name: 'half.safetensors', buffer: shirt.buffer.subarray(0, 100_000) });
+  await told(/^garment "half.safetensors": /);
+  await give({ name: 'broken.glb', buffer: man.buffer.subarray(0, 5000) });
+  await told(/^broken is no glTF file that can be read: /);
+  await give({ name: 'notes.txt', buffer: Buffer.from('a hat') });
+  await told(/^notes.txt: a character \(.glb\) or a model of a garment/);
+  expect((await capture(page)).garment).toBe('tshirt');
+  await give(man, shirt);
+  await expect.poll(async () => (await capture(page).catch(() => undefined))?.garment, patience).toBe('my shirt.safetensors');
+  expect((await capture(page)).figure).toBe('me.glb');
+  expect(await page.getByRole('button', { name: 'my shirt' }).getAttribute('aria-pressed')).toBe('true');
+  await page.screenshot({ path: `${out}/own.png` });
+  expect(complaints).toEqual([]);
+});
+
+test('the address keeps figure, garment, fabric, pose and view', async () => {
+  const first = await site.visit('?wear=tshirt.denim.4a6b4f.dots&view=40,20,1.5');
+  const { page } = first;
+  await page.getByRole('button', { name: 'Pause' }).click();
+  await open(page, 'Pose');
+  await page.getByLabel('Pose it yourself').check();
+  await page.getByRole('button', { name: 'Left hand:' }).focus();
+  for (let i = 0; i < 5; i++) await page.keyboard.press('ArrowLeft');
+  const shown = await capture(page);
+  await expect.poll(() => page.url(), patience).toContain('pose=~');
+  const address = new URL(page.url());
+  expect(address.searchParams.get('wear')).toBe('tshirt.denim.4a6b4f.dots');
+  expect(address.searchParams.get('view')).toBe('40,20,1.5');
+  await site.leave();
+  const again = await site.visit(address.search);
+  const found = await capture(again.page);
+  // Turns are kept in steps of a 32,767th.
+  expect(difference(found.positions, shown.positions)).toBeLessThan(1e-3);
+  expect(await again.page.getByRole('radio', { name: 'Denim' }).isChecked()).toBe(true);
+  expect(await again.page.getByRole('radio', { name: 'Dots' }).isChecked()).toBe(true);
+  await again.page.waitForTimeout(800);
+  expect(new URL(again.page.url()).searchParams.get('pose')).toBe(address.searchParams.get('pose'));
+  const broken = await site.visit('?wear=tshirt.tin.4a6b4f.dots');
+  expect(await broken.page.getByRole('alert').textContent()).toContain('GARMENT.FABRIC.COLOUR.PRINT wanted');
+  expect([...first.complaints, ...again.complaints]).toEqual([]);
+});
+
+test('everything is reached by the keyboard, in the order in which it is seen, and has a name', async () => {
+  const { page, complaints } = await site.visit('?pose=idle:1');
+  const names: string[] = [];
+  const nameOf = `(() => { const at = document.activeElement; return at === document.body ? '' : (at.getAttribute('aria-label') || at.labels?.[0]?.textContent || at.textContent || '').trim() })()`;
+  for (let i = 0; i < 40; i++) {
+    await page.keyboard.press('Tab');
+    const name = await page.evaluate<string>(nameOf);
+    if (name === '') break;
+    names.push(name);
+  }
+  const wanted = [/^Andy, wearing t-shirt\. Drag/, /crowd/, /T-shirt/, /Play/, /Clip/, /Time within/, /Speed/, /Fabric/, /Jersey/, /Cream/, /Pose/, /Maps/, /Copy link/, /Save picture/];
+  let from = 0;
+  for (const pattern of wanted) {
+    const at = names.findIndex((name, i) => i >= from && pattern.test(name));
+    expect(at, `${String(pattern)} in ${names.slice(from).join(' | ')}`).toBeGreaterThanOrEqual(0);
+    from = at + 1;
+  }
+  const unnamed = await page.locator('button:visible, input:visible, select:visible').evaluateAll((all) =>
+    all.filter((one) => !(one.getAttribute('aria-label') || (one as HTMLInputElement).labels?.[0]?.textContent?.trim() || one.textContent?.trim())).map((one) => one.outerHTML),
+  );
+  expect(unnamed).toEqual([]);
+  expect(complaints).toEqual([]);
+});
+
+test('on a phone the figure stays in sight, and the panel folds', async () => {
+  const { page, complaints } = await site.visit('?pose=idle:1', (bare) => bare.setViewportSize({ width: 390, height: 844 }));
+  expect(await page.locator('#panel').isVisible()).toBe(false);
+  expect(await page.evaluate(() => document.documentElement.scrollWidth)).toBe(390);
+  /** Upper edge of the controls, and the lowest joint of the figure, in pixels from the top. */
+  const controls = async (id: string) => (await page.locator(id).boundingBox())!.y;
+  await page.screenshot({ path: `${out}/phone.png` });
+  expect(await controls('#rail')).toBeGreaterThan(500);
+  await page.getByRole('button', { name: 'Fabric, pose' }).click();
+  expect(await page.getByRole('radio', { name: 'Silk' }).isVisible()).toBe(true);
+  expect(await controls('#panel')).toBeGreaterThan(400);
+  await page.getByLabel('Silk').check({ force: true });
+  await page.screenshot({ path: `${out}/phone-open.png` });
+  await page.getByRole('button', { name: 'Less' }).click();
+  expect(await page.locator('#panel').isVisible()).toBe(false);
+  expect(complaints).toEqual([]);
+});
+
+test('the built site works in any folder of a server; a picture is saved', async () => {
+  const folder = mkdtempSync(path.join(tmpdir(), 'ctsn-'));
+  cpSync(file('dist'), folder, { recursive: true });
+  await withServer({ '/some/folder/': folder }, async (origin) => {
+    // The browser without a screen saves nothing: what it would save is looked at.
+    const watch = 'HTMLAnchorElement.prototype.click = function () { window.saved = { name: this.download, address: this.href }; }';
+    const prepare = (bare: Page) => bare.addInitScript(watch);
+    const { page, complaints } = await site.visit(`${origin}/some/folder/index.html?pose=idle:1`, prepare);
+    expect((await capture(page)).garment).toBe('tshirt');
+    await page.getByRole('button', { name: 'Save picture' }).click();
+    await page.waitForFunction('window.saved');
+    const size = '(async () => { const picture = await createImageBitmap(await (await fetch(saved.address)).blob()); return [saved.name, picture.width, picture.height]; })()';
+    expect(await page.evaluate(size)).toEqual(['ctsn-andy.png', 960, 600]);
+    expect(complaints).toEqual([]);
+  });
+});

@@ -1,0 +1,255 @@
+// Models that are shown coarse while their folds are on their way, packed files, and files that the page keeps.
+import { gzipSync } from 'node:zlib';
+import { MeshBasicMaterial } from 'three';
+import { afterEach, expect, test, vi } from 'vitest';
+import { loadModel, preload, type CpuClothModel, type CtsnError } from 'ctsn';
+import { Cloth } from 'ctsn/three';
+import { difference } from '../../tests/browser/safetensors.js';
+import { characterOf } from './character.js';
+import { bytesOf, readGolden, spliceHeader } from './golden.js';
+
+afterEach(() => vi.unstubAllGlobals());
+
+interface Entry {
+  data_offsets: [number, number];
+}
+
+/** The golden model as `ctsn train` writes one: the mesh stream's tensors last. With it, where each tensor ends. */
+function coarseFirst(): { bytes: Uint8Array; ends: number[]; coarse: number } {
+  const bytes = bytesOf('small');
+  const start = 8 + new DataView(bytes.buffer).getUint32(0, true);
+  const header = JSON.parse(new TextDecoder().decode(bytes.subarray(8, start))) as Record<string, Entry & Record<string, string>>;
+  const { __metadata__: said, ...tensors } = header;
+  const isLast = (name: string) => /^(graph|vertex|mesh)\./.test(name);
+  const order = Object.entries(tensors).sort(([a], [b]) => Number(isLast(a)) - Number(isLast(b)));
+  const data = new Uint8Array(bytes.length - start);
+  let at = 0;
+  for (const [name, entry] of order) {
+    if (isLast(name)) said!['coarse'] ??= String(at);
+    const part = bytes.subarray(start + entry.data_offsets[0], start + entry.data_offsets[1]);
+    data.set(part, at);
+    entry.data_offsets = [at, (at += part.length)];
+  }
+  const moved = new Uint8Array(bytes);
+  moved.set(data, start);
+  const file = spliceHeader(moved, JSON.stringify(header));
+  const shift = file.length - data.length;
+  return { bytes: file, ends: order.map(([, entry]) => shift + entry.data_offsets[1]), coarse: shift + Number(said!['coarse']) };
+}
+
+/** A server of one file, sent as the test says. */
+function serve(): { send(bytes: Uint8Array): void; end(): void; cut(): void; signal(): AbortSignal | undefined; asked(): number } {
+  let to!: ReadableStreamDefaultController<Uint8Array>;
+  let asked = 0;
+  let signal: AbortSignal | undefined;
+  vi.stubGlobal('fetch', (_: unknown, init?: RequestInit) => {
+    asked++;
+    signal = init?.signal ?? undefined;
+    return Promise.resolve(new Response(new ReadableStream({ start: (controller) => void (to = controller) })));
+  });
+  const ready = async () => vi.waitUntil(() => to as unknown, { interval: 1 });
+  return {
+    send: (bytes) => void ready().then(() => to.enqueue(bytes)),
+    end: () => void ready().then(() => to.close()),
+    cut: () => void ready().then(() => to.error(new TypeError('network'))),
+    signal: () => signal,
+    asked: () => asked,
+  };
+}
+
+const codeOf = (work: Promise<unknown>): Promise<string> =>
+  work.then(
+    () => 'none',
+    (error: CtsnError) => error.code,
+  );
+
+const { poses, positions, tolerance } = readGolden('small');
+let addresses = 0;
+const address = () => `https://shop.test/${addresses++}.safetensors`;
+
+test('the coarse cloth is there before the folds, which fade in', async () => {
+  const { bytes, coarse } = coarseFirst();
+  const server = serve();
+  server.send(bytes.subarray(0, coarse));
+  const model = await loadModel(address(), { progressive: true });
+  expect([model.finest, model.info.meshMatrices]).toEqual(['coarse', 0]);
+  const early = model.predictCloth(poses[0]!).positions.slice();
+  let heard = 0;
+  model.addEventListener('complete', () => heard++);
+  server.send(bytes.subarray(coarse));
+  server.end();
+  expect(await model.complete).toBe(model);
+  expect([model.finest, heard]).toEqual(['full', 1]);
+  expect(model.info.meshMatrices).toBeGreaterThan(0);
+  expect(model.predictCloth(poses[0]!, { quality: 'coarse' }).positions).toEqual(early);
+  const steps: number[] = [];
+  let before = early;
+  for (let i = 0; i < 12; i++) {
+    const { positions: found } = model.predictCloth(poses[0]!);
+    steps.push(difference(found, before));
+    before = found.slice();
+  }
+  expect(difference(before, positions[0]!)).toBeLessThanOrEqual(tolerance);
+  const whole = difference(early, before);
+  expect(whole).toBeGreaterThan(0.01);
+  expect(Math.max(...steps)).toBeLessThan(0.2 * whole);
+  model.dispose();
+});
+
+test('without the word a model is complete; an older file is, too', async () => {
+  const { bytes } = coarseFirst();
+  const server = serve();
+  server.send(bytes);
+  server.end();
+  const model = await loadModel(address());
+  expect(model.finest).toBe('full');
+  expect(difference(model.predictCloth(poses[0]!).positions, positions[0]!)).toBeLessThanOrEqual(tolerance);
+  expect(await model.complete).toBe(model);
+  const older = await loadModel(bytesOf('small'), { progressive: true });
+  expect(older.finest).toBe('full');
+  model.dispose();
+  older.dispose();
+});
+
+test('a cloth keeps running while its folds come, without a jump', async () => {
+  const { bytes, coarse } = coarseFirst();
+  const server = serve();
+  server.send(bytes.subarray(0, coarse));
+  const model = await loadModel(address(), { progressive: true });
+  const cloth = new Cloth(model, characterOf(model.joints, poses[0]!), new MeshBasicMaterial());
+  const shown = () => Float32Array.from(cloth.geometry.getAttribute('position').array);
+  const first = shown();
+  cloth.update();
+  expect(difference(shown(), first)).toBeLessThan(1e-6);
+  server.send(bytes.subarray(coarse));
+  server.end();
+  await model.complete;
+  let last = shown();
+  const steps = Array.from({ length: 14 }, () => {
+    cloth.update();
+    const step = difference(shown(), last);
+    last = shown();
+    return step;
+  });
+  expect(steps.at(-1)).toBe(0);
+  expect(Math.max(...steps)).toBeLessThan(0.2 * difference(first, last));
+  cloth.dispose();
+  model.dispose();
+});
+
+test.each([
+  ['plain', (bytes: Uint8Array) => bytes],
+  ['packed', (bytes: Uint8Array) => new Uint8Array(gzipSync(bytes))],
+])('a connection cut at any tensor leaves the coarse garment or nothing, and a typed error: %s', async (name, pack) => {
+  const { bytes, ends, coarse } = coarseFirst();
+  const file = pack(bytes);
+  const outcomes = new Set<string>();
+  for (const end of ends.filter((end) => end < bytes.length)) {
+    const server = serve();
+    const part = name === 'plain' ? end : Math.floor((end / bytes.length) * file.length);
+    server.send(file.subarray(0, part));
+    setTimeout(() => server.cut(), 30);
+    const loading = loadModel(address(), { progressive: true });
+    const code = await codeOf(loading);
+    if (name === 'plain') expect(code, `${end} of ${bytes.length}`).toBe(end < coarse ? 'fetch' : 'none');
+    if (code !== 'none') {
+      expect(code).toBe('fetch');
+    } else {
+      const model = await loading;
+      expect(await codeOf(model.complete)).toBe('fetch');
+      expect(model.finest).toBe('coarse');
+      expect(model.predictCloth(poses[0]!).positions.every(Number.isFinite)).toBe(true);
+      model.dispose();
+    }
+    outcomes.add(code);
+    // A file that is that short says so itself.
+    const short = name === 'plain' ? ['truncated', 'none'] : ['truncated'];
+    expect(short).toContain(await codeOf(loadModel(file.slice(0, part))));
+  }
+  expect([...outcomes].sort()).toEqual(['fetch', 'none']);
+});
+
+test('a packed file is the model it was made of', async () => {
+  const model = await loadModel(gzipSync(bytesOf('small')));
+  expect(difference(model.predictCloth(poses[1]!).positions, positions[1]!)).toBeLessThanOrEqual(tolerance);
+  model.dispose();
+  const file = gzipSync(bytesOf('small'));
+  file.fill(0x55, file.length >> 1);
+  expect(await codeOf(loadModel(file))).toBe('truncated');
+});
+
+test('a model disposed of before it is complete ends the request', async () => {
+  const { bytes, coarse } = coarseFirst();
+  const server = serve();
+  server.send(bytes.subarray(0, coarse + 100));
+  const model = await loadModel(address(), { progressive: true });
+  model.dispose();
+  expect(await codeOf(model.complete)).toBe('disposed');
+  expect(server.signal()!.aborted).toBe(true);
+});
+
+test('a file that is on its way is shared, from its beginning on', async () => {
+  const { bytes, coarse } = coarseFirst();
+  const server = serve();
+  const shared = address();
+  server.send(bytes.subarray(0, coarse));
+  const ahead = preload(shared);
+  const first = await loadModel(shared, { progressive: true });
+  const second = await loadModel(shared, { progressive: true });
+  server.send(bytes.subarray(coarse));
+  server.end();
+  await Promise.all([ahead, first.complete, second.complete]);
+  expect(server.asked()).toBe(1);
+  for (const model of [first, second] as CpuClothModel[]) {
+    expect(model.finest).toBe('full');
+    model.dispose();
+  }
+});
+
+/** Cache Storage, as far as the package uses it. */
+function fakeCaches(): Map<string, Map<string, Response>> {
+  const all = new Map<string, Map<string, Response>>();
+  const open = (name: string) => {
+    const files = all.get(name) ?? new Map<string, Response>();
+    all.set(name, files);
+    const plain = (url: string) => url.split('?')[0]!;
+    const like = (url: string, loosely?: boolean) =>
+      [...files.keys()].filter((key) => (loosely ? plain(key) === plain(url) : key === url));
+    return Promise.resolve({
+      match: (url: string) => Promise.resolve(files.get(url)?.clone()),
+      put: async (url: string, response: Response) => void files.set(url, new Response(await response.arrayBuffer())),
+      keys: (url: string, options?: { ignoreSearch: boolean }) =>
+        Promise.resolve(like(url, options?.ignoreSearch).map((key) => ({ url: key }))),
+      delete: ({ url }: { url: string }) => Promise.resolve(files.delete(url)),
+    });
+  };
+  vi.stubGlobal('caches', { open });
+  return all;
+}
+
+test('a page keeps files under their address; a new version takes the place of the old one', async () => {
+  const kept = fakeCaches();
+  let asked = 0;
+  vi.stubGlobal('fetch', () => {
+    asked++;
+    return Promise.resolve(new Response(bytesOf('tiny') as BodyInit));
+  });
+  const load = async (url: string, cache?: string) => (await loadModel(url, { cache })).dispose();
+  await load('https://shop.test/shirt?v=1', 'wardrobe');
+  await vi.waitUntil(() => kept.get('wardrobe')?.size === 1);
+  await load('https://shop.test/shirt?v=1', 'wardrobe');
+  expect(asked).toBe(1);
+  await load('https://shop.test/shirt?v=1');
+  expect(asked, 'who does not ask for it').toBe(2);
+  await load('https://shop.test/shirt?v=2', 'wardrobe');
+  await vi.waitUntil(() => !kept.get('wardrobe')!.has('https://shop.test/shirt?v=1'));
+  expect([...kept.get('wardrobe')!.keys()]).toEqual(['https://shop.test/shirt?v=2']);
+});
+
+test('what cannot be kept is loaded all the same', async () => {
+  vi.stubGlobal('fetch', () => Promise.resolve(new Response(bytesOf('tiny') as BodyInit)));
+  vi.stubGlobal('caches', { open: () => Promise.reject(new DOMException('', 'SecurityError')) });
+  (await loadModel(address(), { cache: 'wardrobe' })).dispose();
+  vi.stubGlobal('caches', undefined);
+  (await loadModel(address(), { cache: 'wardrobe' })).dispose();
+});

@@ -1,0 +1,165 @@
+import {
+  Box3,
+  NeutralToneMapping,
+  PCFShadowMap,
+  PerspectiveCamera,
+  Scene,
+  Vector3,
+  WebGLRenderer,
+  type Object3D,
+} from 'three';
+import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+import { Floor } from './floor.js';
+import { createStudio, createSun } from './light.js';
+
+/** Pixels that controls cover at each side of the picture. */
+export interface Margins {
+  left: number;
+  right: number;
+  top: number;
+  bottom: number;
+}
+
+/** A view: angles in degrees, and distance in heights of the figure. */
+export interface View {
+  around: number;
+  up: number;
+  far: number;
+}
+
+const FIELD = 28;
+
+/** Renderer, camera, light and floor of the page. */
+export class Stage {
+  readonly scene = new Scene();
+  readonly renderer: WebGLRenderer;
+  readonly camera = new PerspectiveCamera(FIELD, 1, 0.02, 60);
+  readonly controls: OrbitControls;
+  readonly floor = new Floor();
+  readonly #canvas: HTMLCanvasElement;
+  readonly #sun = createSun();
+  readonly #focus = new Vector3(0, 0.9, 0);
+  /** Height of the figure, and of its middle above the floor, metres. */
+  #height = 1.8;
+  #middle = 0.9;
+  #changed = true;
+  #margins: Margins = { left: 0, right: 0, top: 0, bottom: 0 };
+
+  constructor(canvas: HTMLCanvasElement) {
+    this.#canvas = canvas;
+    this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    this.renderer.toneMapping = NeutralToneMapping;
+    this.renderer.shadowMap.enabled = true;
+    this.renderer.shadowMap.type = PCFShadowMap;
+    this.controls = new OrbitControls(this.camera, canvas);
+    Object.assign(this.controls, { enableDamping: true, enablePan: false, maxPolarAngle: 1.62, zoomSpeed: 0.7 });
+    // The controls move the camera in their own event handlers too, not only in update().
+    this.controls.addEventListener('change', () => (this.#changed = true));
+    this.scene.environment = createStudio();
+    this.scene.environmentIntensity = 0.85;
+    this.scene.add(this.#sun, this.#sun.target, this.floor);
+    new ResizeObserver(() => this.#resize()).observe(canvas);
+    this.look({ around: 14, up: 6, far: 2.5 });
+  }
+
+  /** Makes room for a figure: its size as it stands now, and the parts of it that touch the floor. */
+  welcome(figure: Object3D, bones: readonly Object3D[]): void {
+    const { view } = this;
+    const box = new Box3().setFromObject(figure, true);
+    const size = box.getSize(new Vector3());
+    // What is longer than it is high, as animals are, is seen from as far as if it were as high.
+    this.#height = Math.max(size.y, 0.7 * size.z, 0.3);
+    this.#middle = 0.5 * (box.min.y + box.max.y);
+    const reach = 0.95 * this.#height;
+    Object.assign(this.#sun.shadow.camera, { left: -reach, right: reach, top: reach, bottom: -reach, near: 0.1, far: 9 });
+    this.#sun.shadow.camera.updateProjectionMatrix();
+    Object.assign(this.controls, { minDistance: Math.min(0.3, 0.4 * this.#height), maxDistance: 6 * this.#height });
+    this.floor.watch(bones, this.#height);
+    this.look(view);
+  }
+
+  /** Keeps camera and lamp between two bones, the figure's hip and its head, and at the height of the first. */
+  follow(hip: Object3D, head: Object3D): void {
+    const to = hip.getWorldPosition(new Vector3());
+    const { x, z } = head.getWorldPosition(new Vector3()).lerp(to, 0.5);
+    to.set(x, to.y, z);
+    to.y = this.#middle + 0.4 * (to.y - this.#middle);
+    this.camera.position.add(to).sub(this.#focus);
+    this.#focus.copy(to);
+    this.controls.target.copy(to);
+    this.#sun.target.position.copy(to);
+    this.#sun.position.set(to.x + 1.7, to.y + 3, to.z + 2.2);
+    this.floor.update();
+  }
+
+  /** Of the figure, metres. */
+  get height(): number {
+    return this.#height;
+  }
+
+  /** Where the camera stands. */
+  get view(): View {
+    const way = this.camera.position.clone().sub(this.#focus);
+    const far = way.length();
+    const degrees = 180 / Math.PI;
+    return {
+      around: Math.round(degrees * Math.atan2(way.x, way.z)),
+      up: Math.round(degrees * Math.asin(way.y / far)),
+      far: Number((far / this.#height).toFixed(2)),
+    };
+  }
+
+  /** Moves the camera around the figure. */
+  look({ around, up, far }: View): void {
+    const [a, b] = [(Math.PI / 180) * around, (Math.PI / 180) * up];
+    const way = new Vector3(Math.sin(a) * Math.cos(b), Math.sin(b), Math.cos(a) * Math.cos(b));
+    this.camera.position.copy(this.#focus).addScaledVector(way, far * this.#height);
+    this.controls.target.copy(this.#focus);
+    this.controls.update();
+    this.#changed = true;
+  }
+
+  /** Where the figure's middle is in the picture, from its left as a share of its width. */
+  get middle(): number {
+    const { left, right } = this.#margins;
+    return 0.5 + (left - right) / (2 * this.#canvas.clientWidth);
+  }
+
+  /** How far the camera is from the middle of the figure, metres. */
+  get distance(): number {
+    return this.camera.position.distanceTo(this.#focus);
+  }
+
+  /** Moves the camera as the person at the controls wants; true if the view has changed since the last call. */
+  turn(): boolean {
+    this.controls.update();
+    const changed = this.#changed;
+    this.#changed = false;
+    return changed;
+  }
+
+  render(): void {
+    this.renderer.render(this.scene, this.camera);
+  }
+
+  /** Moves the figure into the middle of what no control covers, and as far away as it then must be. */
+  frame(margins: Margins): void {
+    this.#margins = margins;
+    this.#resize();
+  }
+
+  #resize(): void {
+    const { clientWidth: width, clientHeight: height } = this.#canvas;
+    const { left, right, top, bottom } = this.#margins;
+    this.renderer.setSize(width, height, false);
+    this.#changed = true;
+    this.camera.aspect = width / height;
+    const free = { width: Math.max(width - left - right, 160), height: Math.max(height - top - bottom, 160) };
+    // A figure with its arms out is about as wide as high; it may reach under the controls.
+    const least = Math.min(free.height, 1.3 * free.width) / height;
+    this.camera.fov = (360 / Math.PI) * Math.atan(Math.tan((FIELD * Math.PI) / 360) / least);
+    const [x, y] = [(right - left) / 2, (bottom - top) / 2];
+    this.camera.setViewOffset(width, height, x, y, width, height);
+  }
+}
