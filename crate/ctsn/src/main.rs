@@ -11,7 +11,7 @@ mod pictures;
 use clap::{Parser, Subcommand};
 use commands::{
     bake, bench, character, evaluate, export, garment, inspect, motion, pack, polish, predict, render, sheet, simulate,
-    study, train,
+    split, study, train,
 };
 
 /// Learned cloth for any skinned character.
@@ -23,6 +23,7 @@ use commands::{
 ///
 /// The same by steps, each resumable:
 ///
+///   ctsn split character.glb -o parts                 clothes of a character's own, apart from it
 ///   ctsn motion character.glb -o moving.glb           clips, if it has none
 ///   ctsn garment character.glb -o garment.glb         a garment, if you have none
 ///   ctsn simulate character.glb garment.glb -o data   quasi-static truth for every frame of the clips
@@ -45,6 +46,7 @@ struct Cli {
 enum Command {
     Bake(Box<bake::Arguments>),
     Character(character::Arguments),
+    Split(split::Arguments),
     Motion(motion::Arguments),
     Garment(garment::Arguments),
     Simulate(simulate::Arguments),
@@ -82,6 +84,7 @@ fn main() -> std::process::ExitCode {
     end_with_the_reader();
     let result = match Cli::parse().command {
         Command::Character(arguments) => character::run(&arguments),
+        Command::Split(arguments) => split::run(&arguments),
         Command::Motion(arguments) => motion::run(&arguments),
         Command::Garment(arguments) => garment::run(&arguments),
         Command::Render(arguments) => render::run(&arguments),

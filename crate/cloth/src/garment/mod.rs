@@ -37,7 +37,7 @@ mod obstacle_test;
 #[cfg(test)]
 mod test;
 
-pub use check::{Findings, Fitted, check, fit, load, rehearse};
+pub use check::{Fault, Findings, Fitted, check, fit, load, rehearse, sketch};
 pub use drape::{Rest, drape};
 pub use kind::Kind;
 pub use quality::{Quality, quality};

@@ -60,12 +60,12 @@ impl BodyDistance {
         edges.filter(|ends| body.crosses(ends.map(|end| vertices[end]))).count()
     }
 
-    /// Moves vertices [n] (body frame, metres) that lie inside the body in `pose` (world) out of it, where that takes
-    /// at most `limit` metres; how many were moved.
-    pub fn lift(&self, pose: &Pose, vertices: &mut [DVec3], limit: f64) -> usize {
+    /// Moves the `chosen` among the vertices [n] (body frame, metres) that lie inside the body in `pose` (world) out of
+    /// it, where that takes at most `limit` metres; how many were moved.
+    pub fn lift(&self, pose: &Pose, vertices: &mut [DVec3], limit: f64, chosen: impl Fn(usize) -> bool) -> usize {
         let body = self.posed(pose);
         let mut moved = 0;
-        for vertex in vertices {
+        for (_, vertex) in vertices.iter_mut().enumerate().filter(|(index, _)| chosen(*index)) {
             let mut place = *vertex;
             for _ in 0..MOVES {
                 match body.closest(place, None, 0.5).filter(|hit| hit.distance < 0.0 && body.encloses(place)) {

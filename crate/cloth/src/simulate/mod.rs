@@ -20,6 +20,7 @@ mod outcome;
 mod outer_skin;
 mod posed;
 mod proximity;
+mod rescue;
 mod settings;
 mod simulator;
 mod transport;

@@ -122,6 +122,11 @@ impl<'a> Solver<'a> {
         self.touches.iter_mut().for_each(Vec::clear);
     }
 
+    /// Whether a vertex was let go because the body has no room for it.
+    pub fn is_let_go(&self, vertex: usize) -> bool {
+        self.pinched[vertex]
+    }
+
     /// Contacts, static forces and the Hessian for the proximal time step `h` seconds, against the posed body, if any.
     pub fn probe(&mut self, body: Option<&PosedBody>, h: f64) -> Probe {
         let least_distance = self.detect(body);

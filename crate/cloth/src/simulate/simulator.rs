@@ -79,9 +79,8 @@ impl Simulator {
         let body = self.collider.pose(&self.character.skinning(&pose));
         let mut solver = self.level.solver(&self.settings, self.rest.clone());
         self.level.pin(&mut solver, &self.rest, &self.character.skinning(&pose));
-        let relaxed = solver.relax(Some(&body), 10 * self.settings.relax_iterations);
-        let Outcome { status, positions, .. } =
-            self.outcome(solver, relaxed, &pose, body_frame(&self.character, &pose));
+        let (iterations, to_body) = (10 * self.settings.relax_iterations, body_frame(&self.character, &pose));
+        let Outcome { status, positions, .. } = self.settle(solver, &body, iterations, &pose, to_body);
         match status {
             Status::Converged => Ok(positions),
             Status::Rejected { reason } => Err(Error::Simulation(format!("canonical drape: {reason}"))),
@@ -95,12 +94,11 @@ impl Simulator {
         }
         let way = self.way(pose);
         let through = self.coarse.as_ref().and_then(|coarse| self.through(coarse, template, &way));
-        let (mut solver, body) = match through {
+        let (solver, body) = match through {
             Some(refined) => refined,
             None => self.travel(&self.level, template, &way),
         };
-        let relaxed = solver.relax(Some(&body), self.settings.relax_iterations);
-        self.outcome(solver, relaxed, pose, DAffine3::IDENTITY)
+        self.settle(solver, &body, self.settings.relax_iterations, pose, DAffine3::IDENTITY)
     }
 
     /// Relaxes `pose` from `start` (body frame [n]), which may cross itself and the body a little. The equilibrium is
@@ -116,8 +114,7 @@ impl Simulator {
         let heights = self.cover.heights(&self.body.posed(pose), &self.collider, &end);
         let body = self.collider.raised(&end, &heights, 1.0);
         self.level.pin(&mut solver, template, &end);
-        let relaxed = solver.relax(Some(&body), self.settings.relax_iterations);
-        self.outcome(solver, relaxed, pose, DAffine3::IDENTITY)
+        self.settle(solver, &body, self.settings.relax_iterations, pose, DAffine3::IDENTITY)
     }
 
     /// Why this cannot be simulated.
@@ -155,8 +152,8 @@ impl Simulator {
         // by contact planes and by springs towards its mouth: the first never came to rest, the second drew as many
         // others in.
         let Inside { free, pinched, least } = inside;
-        if free > 0 {
-            let depth = -1e3 * least;
+        if !free.is_empty() {
+            let (free, depth) = (free.len(), -1e3 * least);
             return reject(format!("wanted no vertex inside the body, found {free}, {depth:.2} mm deep"));
         }
         if pinched as f64 > wanted.pinched * outcome.positions.len() as f64 {
@@ -175,30 +172,38 @@ impl Simulator {
         Status::Converged
     }
 
-    /// Counts vertices (body frame, metres) inside the body in `pose` (world).
+    /// Vertices (body frame, metres) inside the body in `pose` (world).
     fn inside(&self, pose: &Pose, placed: &[DVec3]) -> Inside {
         let skin = self.collider.pose(&self.character.skinning(&to_body_frame(&self.character, pose)));
         let signed = self.body.signed(pose, placed);
-        let inside = placed.iter().zip(signed).filter(|(_, distance)| *distance < 0.0);
-        inside.fold(Inside::default(), |Inside { free, pinched, least }, (vertex, distance)| {
-            match skin.pinches(*vertex, PINCH, self.settings.thickness) {
-                true => Inside { free, pinched: pinched + 1, least },
-                false => Inside { free: free + 1, pinched, least: least.min(distance) },
+        let mut inside = Inside::default();
+        for (vertex, distance) in signed.into_iter().enumerate().filter(|(_, distance)| *distance < 0.0) {
+            if skin.pinches(placed[vertex], PINCH, self.settings.thickness) {
+                inside.pinched += 1;
+            } else {
+                inside.free.push(vertex);
+                inside.least = inside.least.min(distance);
             }
-        })
+        }
+        inside
+    }
+
+    /// Vertices (body frame, metres) inside the body in `pose` (world) that have a way out.
+    pub(super) fn free(&self, pose: &Pose, placed: &[DVec3]) -> Vec<usize> {
+        self.inside(pose, placed).free
     }
 
     /// `to_body`: from the solver's space to the body frame of `pose`.
-    fn outcome(&self, solver: Solver, relaxed: Probe, pose: &Pose, to_body: DAffine3) -> Outcome {
+    pub(super) fn outcome(&self, solver: &Solver, relaxed: Probe, pose: &Pose, to_body: DAffine3) -> Outcome {
         let from_body = to_body.inverse();
         let crossings = |positions: &[DVec3]| self.level.cloth.elements.crossings(positions).len();
         let at_rest: Vec<DVec3> = solver.positions.iter().map(|p| to_body.transform_point3(*p)).collect();
         let mut placed = at_rest.clone();
-        let mut lifted = self.body.lift(pose, &mut placed, self.settings.lift);
+        let mut lifted = self.body.lift(pose, &mut placed, self.settings.lift, |_| true);
         let mut positions: Vec<DVec3> = placed.iter().map(|p| from_body.transform_point3(*p)).collect();
         // Between two parts of the body what is lifted from one may be laid on the wrong side of a fold.
         if lifted == 0 || crossings(&positions) > crossings(&solver.positions) {
-            (lifted, placed, positions) = (0, at_rest, solver.positions);
+            (lifted, placed, positions) = (0, at_rest, solver.positions.clone());
         }
         let (stretch_p99, stretch_max) = stretch(&self.level.cloth, &positions);
         let mut outcome = Outcome {
@@ -241,7 +246,7 @@ impl Simulator {
 #[derive(Default)]
 struct Inside {
     /// Those with a way out.
-    free: usize,
+    free: Vec<usize>,
     /// Those where the body passes into itself.
     pinched: usize,
     /// Least signed distance of the former, metres.

@@ -125,7 +125,7 @@ impl Field {
     }
 
     /// Gaussian of standard deviation `sigma` metres, as three box filters per axis.
-    fn smooth(&mut self, sigma: f64) {
+    pub(super) fn smooth(&mut self, sigma: f64) {
         // Three boxes of half-width r voxels have variance r(r+1).
         let variance = (sigma / self.cell).powi(2);
         let half = (((1.0 + 4.0 * variance).sqrt() - 1.0) / 2.0).round() as usize;

@@ -61,6 +61,40 @@ impl<'a> Faces<'a> {
         Some((face as usize, foot(face)))
     }
 
+    /// How far along a unit `direction` the first face is met within `reach`, metres.
+    pub fn first_hit(&self, origin: DVec3, direction: DVec3, reach: f64) -> Option<f64> {
+        self.met(origin, direction, reach).map(|(_, along)| along).min_by(f64::total_cmp)
+    }
+
+    /// The faces that are met along a unit `direction` within `reach` metres, ascending.
+    pub fn pierced(&self, origin: DVec3, direction: DVec3, reach: f64) -> Vec<usize> {
+        let mut faces: Vec<usize> = self.met(origin, direction, reach).map(|(face, _)| face).collect();
+        faces.sort_unstable();
+        faces
+    }
+
+    /// The faces along a ray, and how far along they are met, metres.
+    fn met(&self, origin: DVec3, direction: DVec3, reach: f64) -> impl Iterator<Item = (usize, f64)> {
+        let (from, inverse) = (origin.to_array(), direction.recip().to_array());
+        let crossed = move |node: &BvhNode| {
+            let (low, high) = (node.mins(), node.maxs());
+            let (mut enter, mut leave) = (0.0f64, reach);
+            for k in 0..3 {
+                let (a, b) = ((low[k] - from[k]) * inverse[k], (high[k] - from[k]) * inverse[k]);
+                enter = enter.max(a.min(b));
+                leave = leave.min(a.max(b));
+            }
+            enter <= leave
+        };
+        self.tree.leaves(crossed).filter_map(move |face| {
+            let corners = self.mesh.triangles[face as usize].map(|i| self.mesh.positions[i as usize]);
+            let inside = |at: &triangle::Meeting| at.u >= 0.0 && at.v >= 0.0 && at.u + at.v <= 1.0;
+            let meeting = triangle::meet(origin, direction, corners).filter(inside);
+            let along = meeting.map(|at| at.along).filter(|along| (0.0..=reach).contains(along))?;
+            Some((face as usize, along))
+        })
+    }
+
     /// The faces whose boxes come as near to a point along every axis as `reach`, metres.
     pub fn within(&self, point: DVec3, reach: f64) -> Vec<u32> {
         let near = bounds([point - reach, point + reach, point]);

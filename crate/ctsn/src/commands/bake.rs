@@ -1,15 +1,19 @@
 //! `ctsn bake`: simulate, train and evaluate in one go.
 
 use super::{evaluate, file_name, garment, motion, simulate, train};
+use crate::pages;
 use anyhow::{Context, Result, bail, ensure};
 use ctsn_cast::motion::clips;
-use ctsn_cloth::garment::Cut;
+use ctsn_cloth::garment::{Cut, load, rehearse, sketch};
 use ctsn_rig::Character;
 use ctsn_rig::file::{read, write};
 use ctsn_rig::mixed::has_limbs;
+use ctsn_train::dataset::Dataset;
 use ctsn_train::ground_truth::Shard;
 use ctsn_train::report::Report;
 use ctsn_train::training::Settings;
+use indicatif::HumanDuration;
+use maud::Markup;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -74,10 +78,14 @@ pub fn run(arguments: &Arguments) -> Result<()> {
 
     let steps = Steps { character: &character, arguments, garment: &garment, budget };
     let first = work.join("first.safetensors");
+    let shown = steps.check()?;
     if !first.exists() {
         let few = frames.div_ceil(FIRST).max(FEWEST).min(frames);
         let along = simulate::Options { poses: Some(few), mixed: 0, noise_floor: 0, ..options.clone() };
+        steps.estimate(&along, &work.join("first"), frames + mixed)?;
+        println!("step 1 of 5: poses along their paths");
         steps.simulate(&along, &work.join("first"), SHARES[0])?;
+        println!("step 2 of 5: a first model");
         steps.train(&work.join("first"), &first, SHARES[1])?;
     }
     if !output.exists() {
@@ -85,10 +93,25 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         println!("{}: a first model; a better one follows", file_name(output));
     }
     let many = simulate::Options { poses: Some(frames), mixed, from: Some(first), ..options.clone() };
+    println!("step 3 of 5: poses from what it predicts");
     steps.simulate(&many, &work, SHARES[2])?;
+    println!("step 4 of 5: the model");
     steps.train(&work, output, SHARES[3])?;
-    let json = Some(output.with_extension("report.json"));
-    evaluate::run(&evaluate::Arguments { model: output.clone(), dataset: work, json, html: None })
+    println!("step 5 of 5: its errors");
+    let [json, page] = ["report.json", "html"].map(|extension| output.with_extension(extension));
+    let judged = evaluate::Arguments {
+        model: output.clone(),
+        dataset: work.clone(),
+        json: Some(json),
+        html: Some(page.clone()),
+    };
+    evaluate::judge(&judged, |errors| {
+        let (report, dataset) = (Report::new(&work)?, Dataset::read(&work)?);
+        let before = pages::bake::before(shown, &work, &dataset, &character, &report)?;
+        Ok([before, pages::bake::after(&report, errors.ratio, &file_name(output))])
+    })?;
+    println!("{}: pictures, what was mended, what to do better, and how to put it on a page", page.display());
+    Ok(())
 }
 
 /// What all steps share.
@@ -108,6 +131,49 @@ impl Steps<'_> {
             shard: Shard::WHOLE,
             options: options.clone(),
         }
+    }
+
+    /// Says what is wrong with the garment and what of it was mended, before anything is begun; the same to be shown.
+    fn check(&self) -> Result<Markup> {
+        let found = sketch(self.garment, self.character)?;
+        let mut complete = Character { clips: Vec::new(), ..self.character.clone() };
+        let hung = load(self.garment, &mut complete, self.arguments.options.resample).and_then(|fitted| {
+            let moved = rehearse(&complete, &fitted.garment, self.arguments.options.pinched)?;
+            Ok((fitted, moved))
+        });
+        let path = self.arguments.output.with_extension("html");
+        if hung.is_err() {
+            let names = [self.garment, &self.arguments.character].map(file_name);
+            write(&path, pages::check::page(names, self.character, &complete, &found, &hung)?.as_bytes())?;
+        }
+        let shown = pages::check::faults(self.character, &complete, &found, &hung)?;
+        hung.with_context(|| format!("{} (pictures in {})", self.garment.display(), path.display()))?;
+        Ok(shown)
+    }
+
+    /// Says how long it will take, from two poses.
+    fn estimate(&self, options: &simulate::Options, dataset: &Path, poses: usize) -> Result<()> {
+        let two = simulate::Options { poses: Some(2), ..options.clone() };
+        simulate::along(self.character, &self.simulation(&two, dataset), None)?;
+        let cores = std::thread::available_parallelism().map_or(1, usize::from) as f64;
+        let pose = Report::new(dataset)?.seconds.median / cores;
+        match self.budget {
+            Some(budget) => {
+                let possible = (budget.as_secs_f64() * (SHARES[0] + SHARES[2]) / pose.max(1e-3)) as usize;
+                println!(
+                    "this takes {}: a pose takes {pose:.1} s, so about {} of {poses} poses are simulated; a first model is \
+                     there after {}",
+                    HumanDuration(budget),
+                    possible.min(poses),
+                    HumanDuration(budget.mul_f64(SHARES[0] + SHARES[1]))
+                );
+            }
+            None => println!(
+                "a pose takes {pose:.1} s: {poses} take about {}, and as many epochs as were asked for come behind",
+                HumanDuration(Duration::from_secs_f64(pose * poses as f64))
+            ),
+        }
+        Ok(())
     }
 
     /// Simulates into a dataset for this share of the time; longer where a training wants more poses. A dataset that

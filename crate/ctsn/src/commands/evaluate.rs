@@ -6,7 +6,8 @@ use anyhow::{Context, Result};
 use ctsn_core::model::HostModel;
 use ctsn_rig::file;
 use ctsn_train::dataset::{Dataset, Split};
-use ctsn_train::judging;
+use ctsn_train::judging::{self, Report};
+use maud::{Markup, html};
 use std::path::{Path, PathBuf};
 
 /// Compare a model with the simulation on the last tenth of the clips (with fewer than ten: of each clip)
@@ -29,6 +30,11 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> Result<()> {
+    judge(arguments, |_| Ok([html! {}, html! {}]))
+}
+
+/// Judges the model; `around` gives what the page has before and after its figures.
+pub fn judge(arguments: &Arguments, around: impl FnOnce(&Report) -> Result<[Markup; 2]>) -> Result<()> {
     let (model, dataset) = (model(&arguments.model)?, Dataset::read(&arguments.dataset)?);
     let report = judging::evaluate(&model, &dataset, Split::Test)?;
     if let Some(path) = &arguments.json {
@@ -37,7 +43,8 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     if let Some(path) = &arguments.html {
         let curves = training::curves(&arguments.model.with_extension("curve.csv"))?;
         let gallery = Gallery::new(&model, &dataset, &report)?;
-        let page = page::report(&report, &curves, &gallery, &facts(&arguments.model, &model)?)?;
+        let facts = facts(&arguments.model, &model)?;
+        let page = page::report(&report, &curves, &gallery, &facts, &around(&report)?)?;
         file::write(path, page.as_bytes())?;
     }
     println!("{report}");

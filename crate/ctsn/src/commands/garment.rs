@@ -1,10 +1,11 @@
 //! `ctsn garment`: a garment for any character.
 
-use super::simulate::PINCHED;
+use super::file_name;
+use super::simulate::{PINCHED, add_body};
+use crate::pages;
 use anyhow::{Context, Result};
-use ctsn_cloth::garment::{Cut, Resample, Rest, default_kind, drape, load, rehearse, shell};
-use ctsn_rig::Garment;
-use ctsn_rig::gltf;
+use ctsn_cloth::garment::{Cut, Resample, Rest, default_kind, drape, load, rehearse, shell, sketch};
+use ctsn_rig::{Garment, file, gltf};
 use std::path::{Path, PathBuf};
 
 /// Make a garment for any rigged character, or check one of your own
@@ -29,6 +30,12 @@ pub struct Arguments {
     /// Check this garment instead (glTF)
     #[arg(long, conflicts_with = "output")]
     check: Option<PathBuf>,
+    /// With --check, write what was found as a page with pictures: the garment on the body, faults in colour (HTML)
+    #[arg(long, value_name = "FILE", requires = "check")]
+    html: Option<PathBuf>,
+    /// With --check, take the body of this file (glTF) where the character's own skin is missing
+    #[arg(long, value_name = "OTHER", requires = "check")]
+    body: Option<PathBuf>,
     /// The mesh that --check simulates, as of `simulate`: auto, never, or the length of an edge in mm
     #[arg(long, value_name = "WHEN", default_value_t = Resample::Auto, requires = "check")]
     resample: Resample,
@@ -38,22 +45,33 @@ pub struct Arguments {
 
 pub fn run(arguments: &Arguments) -> Result<()> {
     if let Some(garment) = &arguments.check {
-        return check(&arguments.character, garment, arguments.resample);
+        return check(arguments, garment);
     }
     arguments.output.as_ref().map_or(Ok(()), |output| make(&arguments.character, &arguments.cut, output))
 }
 
 /// Says what is wrong with a garment and what of it is mended; fails on what makes it unusable.
-fn check(character: &Path, garment: &Path, resample: Resample) -> Result<()> {
-    let character = gltf::read_character(character, 1.0)?;
-    let fitted = load(garment, &character, resample)?;
+fn check(arguments: &Arguments, path: &Path) -> Result<()> {
+    let mut character = gltf::read_character(&arguments.character, 1.0)?;
+    arguments.body.as_deref().map_or(Ok(()), |other| add_body(&mut character, other))?;
+    let bare = character.clone();
+    let found = load(path, &mut character, arguments.resample);
+    let hung = found.and_then(|fitted| {
+        let moved = rehearse(&character, &fitted.garment, PINCHED)?;
+        Ok((fitted, moved))
+    });
+    if let Some(page) = &arguments.html {
+        let names = [path, &arguments.character].map(file_name);
+        let text = pages::check::page(names, &bare, &character, &sketch(path, &bare)?, &hung)?;
+        file::write(page, text.as_bytes())?;
+    }
+    let (fitted, moved) = hung.with_context(|| path.display().to_string())?;
     fitted.mended.iter().for_each(|mend| println!("mended: {mend}"));
     fitted.warnings.iter().for_each(|warning| println!("{warning}"));
-    let moved = rehearse(&character, &fitted.garment, PINCHED).with_context(|| garment.display().to_string())?;
     let Garment { mesh, pins, .. } = &fitted.garment;
     println!(
         "{}: {} vertices, {} pins; fit to be simulated, {} mended, {} warnings; hung, it moves by up to {:.0} mm",
-        garment.display(),
+        path.display(),
         mesh.positions.len(),
         pins.len(),
         fitted.mended.len(),

@@ -14,6 +14,7 @@ pub mod predict;
 pub mod render;
 pub mod sheet;
 pub mod simulate;
+pub mod split;
 pub mod study;
 pub mod train;
 

@@ -1,6 +1,6 @@
 //! `ctsn sheet`: what a dataset looks like, for people to judge.
 
-use crate::pictures;
+use crate::pictures::{self, Poses};
 use anyhow::Result;
 use ctsn_rig::file::write;
 use ctsn_rig::gltf;
@@ -17,6 +17,9 @@ pub struct Arguments {
     /// Show mixed poses instead of frames
     #[arg(long)]
     mixed: bool,
+    /// Show frames that were left out instead of those that were kept
+    #[arg(long, conflicts_with = "mixed")]
+    left_out: bool,
     /// Where to write the picture (PNG)
     #[arg(short, long)]
     output: PathBuf,
@@ -25,7 +28,12 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<()> {
     let dataset = Dataset::read(&arguments.dataset)?;
     let character = gltf::read_character(&arguments.character, dataset.setup.description.rate)?;
-    let picture = pictures::sheet(&dataset, &character, arguments.mixed)?;
+    let poses = match arguments {
+        Arguments { mixed: true, .. } => Poses::Mixed,
+        Arguments { left_out: true, .. } => Poses::LeftOut,
+        _ => Poses::Kept,
+    };
+    let picture = pictures::sheet(&arguments.dataset, &dataset, &character, poses)?;
     let path = &arguments.output;
     write(path, &pictures::png(&picture)?)?;
     println!("{}", path.display());

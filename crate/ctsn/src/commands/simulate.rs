@@ -5,7 +5,7 @@ use anyhow::{Result, bail};
 use ctsn_cloth::garment::{self, Fitted, Resample};
 use ctsn_cloth::simulate::{Material, Settings};
 use ctsn_rig::gltf;
-use ctsn_rig::{Character, Garment};
+use ctsn_rig::{Character, Garment, SkinWeights, SkinnedMesh};
 use ctsn_train::dataset::Dataset;
 use ctsn_train::ground_truth::{self, Kind, Request, Run, Shard};
 use ctsn_train::report::Report;
@@ -44,6 +44,9 @@ pub struct Arguments {
 /// Poses per second of the clips, where nothing else is asked for.
 const RATE: f64 = 10.0;
 
+/// How far the joints of another file's body may be from the character's, in its extents.
+const APART: f64 = 0.03;
+
 /// Share of the vertices that may lie where the body passes into itself.
 pub const PINCHED: f64 = 0.03;
 
@@ -80,6 +83,9 @@ pub struct Options {
     /// into the chest, say): no place is outside there. With 0, few poses are kept of wide motion on slim limbs
     #[arg(long, value_name = "SHARE", default_value_t = PINCHED)]
     pub pinched: f64,
+    /// Take the body of this file (glTF), bound to joints of the same names, where the character's own skin is missing
+    #[arg(long, value_name = "OTHER")]
+    pub body: Option<PathBuf>,
 }
 
 pub fn run(arguments: &Arguments) -> Result<()> {
@@ -90,7 +96,9 @@ pub fn run(arguments: &Arguments) -> Result<()> {
 pub fn along(character: &Character, arguments: &Arguments, until: Option<Instant>) -> Result<()> {
     let Arguments { options, output, shard, .. } = arguments;
     let material = Material::named(&options.material)?;
-    let garment = fitted(&arguments.garment, character, options.resample)?;
+    let mut character = character.clone();
+    let garment = fitted(&arguments.garment, &mut character, options.resample)?;
+    let character = &character;
     let teacher = options.from.as_deref().map(model).transpose()?;
     let names = [file_name(&arguments.character), file_name(&arguments.garment)];
     println!("{} on {}: {} vertices", names[1], names[0], garment.mesh.positions.len());
@@ -118,8 +126,8 @@ pub fn along(character: &Character, arguments: &Arguments, until: Option<Instant
     Ok(())
 }
 
-/// Reads a garment, and says what was mended and what may be wrong.
-fn fitted(path: &Path, character: &Character, resample: Resample) -> Result<Garment> {
+/// Reads a garment, completes the body under it, and says what was mended and what may be wrong.
+fn fitted(path: &Path, character: &mut Character, resample: Resample) -> Result<Garment> {
     let Fitted { garment, mended, warnings } = garment::load(path, character, resample)?;
     mended.iter().for_each(|mend| eprintln!("  {}: mended: {mend}", path.display()));
     warnings.iter().for_each(|warning| eprintln!("  {}: {warning}", path.display()));
@@ -129,8 +137,8 @@ fn fitted(path: &Path, character: &Character, resample: Resample) -> Result<Garm
 /// The frames of a character's clips in a garment of cotton, for a training without simulated poses.
 pub fn unsimulated(character: &Path, garment: &Path) -> Result<Dataset> {
     let names = [file_name(character), file_name(garment)];
-    let character = gltf::read_character(character, RATE)?;
-    let cloth = fitted(garment, &character, Resample::Auto)?;
+    let mut character = gltf::read_character(character, RATE)?;
+    let cloth = fitted(garment, &mut character, Resample::Auto)?;
     println!("{} on {}: {} vertices; draping it", names[1], names[0], cloth.mesh.positions.len());
     let request = Request {
         character: &character,
@@ -158,7 +166,30 @@ pub fn character(path: &Path, options: &Options) -> Result<Character> {
         bail!("{}: no clip {name}; it has: {}", path.display(), known.join(", "));
     }
     character.clips.retain(|clip| options.clips.is_empty() || options.clips.contains(&clip.name));
+    options.body.as_deref().map_or(Ok(()), |other| add_body(&mut character, other))?;
     Ok(character)
+}
+
+/// Adds the body of another file, bound to joints of the same names in the same places.
+pub fn add_body(character: &mut Character, path: &Path) -> Result<()> {
+    let other = gltf::read_character(path, 1.0)?;
+    let extent = other.body.mesh.extent();
+    let (ours, theirs) = (character.canonical_pose(), other.canonical_pose());
+    let joint = |index: usize| -> Result<usize> {
+        let name = &other.joints[index].name;
+        let Some(own) = character.joint(name) else {
+            bail!("{}: its skin follows {name}; wanted a joint of the character", path.display());
+        };
+        let apart = ours[own].translation.distance(theirs[index].translation);
+        if apart > APART * extent {
+            bail!("{}: its {name} is {apart:.2} m from the character's; wanted the same pose and size", path.display());
+        }
+        Ok(own)
+    };
+    let row = |row: &SkinWeights| row.iter().map(|(at, weight)| Ok((joint(*at)?, *weight))).collect::<Result<_>>();
+    let weights = other.body.weights.iter().map(row).collect::<Result<Vec<SkinWeights>>>()?;
+    character.body.extend(SkinnedMesh { mesh: other.body.mesh, weights });
+    Ok(())
 }
 
 /// Simulates with a progress bar; in a log file, with a line now and then.

@@ -10,11 +10,11 @@ use canvas::Canvas;
 pub use comparison::comparison;
 use ctsn_rig::file::write;
 use ctsn_rig::mesh::bounds;
-use ctsn_rig::{Character, Error, Pose, Result};
+use ctsn_rig::{Character, Error, Mesh, Pose, Result};
 use figure::Figure;
 use glam::{DMat3, DVec2, DVec3};
 use image::RgbImage;
-pub use sheet::sheet;
+pub use sheet::{Poses, sheet};
 use std::path::Path;
 
 /// Width and greatest height of one view, pixels. Content that is wide rather than tall gets a lower picture.
@@ -91,6 +91,12 @@ pub fn render_dressed(
 ) -> Result<()> {
     let figure = Figure::new(character, pose, cloth);
     write(path, &png(&contact_sheet(&figure.layers(), &View::THREE))?)
+}
+
+/// Front, side and back view of a character in its canonical pose, with cloth in these colours, linear RGB per vertex.
+pub fn painted(character: &Character, cloth: &Mesh, colour: &[[f32; 3]]) -> RgbImage {
+    let figure = Figure::new(character, &character.canonical_pose(), Some((&cloth.positions, &cloth.triangles)));
+    contact_sheet(&figure.painted(colour).layers(), &View::THREE)
 }
 
 /// The bytes of a picture as PNG.

@@ -10,6 +10,7 @@ use ctsn_rig::{Error, Result};
 use ctsn_train::dataset::{Dataset, Sample};
 use glam::{DVec2, DVec3};
 use image::{Rgb, RgbImage};
+use std::path::Path;
 
 /// Poses on a sheet, and how many of them side by side.
 const POSES: usize = 12;
@@ -22,18 +23,42 @@ const CAPTION: usize = text::HEIGHT + 10;
 /// Share of the view on either side of the cloth: enough of the body to understand the pose.
 const MARGIN: f64 = 0.14;
 
-/// The sheet of the frames or the `mixed` poses of `dataset`, which was made with `character`.
-pub fn sheet(dataset: &Dataset, character: &Character, mixed: bool) -> Result<RgbImage> {
+/// Which poses of a dataset are shown.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Poses {
+    /// The frames that were kept.
+    Kept,
+    /// The mixed poses that were kept.
+    Mixed,
+    /// The frames that were left out.
+    LeftOut,
+}
+
+/// The sheet of some poses of the dataset in `folder`, which was made with `character`.
+pub fn sheet(folder: &Path, dataset: &Dataset, character: &Character, poses: Poses) -> Result<RgbImage> {
     let description = &dataset.setup.description;
     let names = character.joints.iter().map(|joint| &joint.name);
-    if !names.eq(&description.joints) || character.body.mesh.positions.len() * 3 != dataset.setup.body.len() {
+    // What was missing of the body was added behind it.
+    if !names.eq(&description.joints) || character.body.mesh.positions.len() * 3 > dataset.setup.body.len() {
         return Err(Error::Dataset(format!("wanted the character {}, found another", description.character)));
     }
-    let samples = if mixed { &dataset.mixed } else { &dataset.samples };
+    let left_out;
+    let samples = match poses {
+        Poses::Kept => &dataset.samples,
+        Poses::Mixed => &dataset.mixed,
+        Poses::LeftOut => {
+            left_out = dataset.left_out(folder)?;
+            &left_out
+        }
+    };
     let chosen = choose(samples, &vertices(&dataset.setup.template), character);
     if chosen.is_empty() {
-        let what = if mixed { "mixed pose" } else { "pose" };
-        return Err(Error::Dataset(format!("no {what} was kept, there is nothing to show")));
+        let what = match poses {
+            Poses::Kept => "no pose was kept",
+            Poses::Mixed => "no mixed pose was kept",
+            Poses::LeftOut => "no pose was left out",
+        };
+        return Err(Error::Dataset(format!("{what}, there is nothing to show")));
     }
     let setup = &dataset.setup;
     let triangles = setup.shown_triangles().as_chunks::<3>().0;
@@ -57,7 +82,7 @@ pub fn sheet(dataset: &Dataset, character: &Character, mixed: bool) -> Result<Rg
             let canvas = Canvas::new(VIEW, view.axes(), (low + high) / 2.0, pixels_per_metre);
             canvas.paint(&layers, ground).resolve(&mut sheet, [corner[0] + side * (VIEW[0] + GAP), corner[1]]);
         }
-        let clip = if mixed { "mixed" } else { &description.clips[sample.record.clip] };
+        let clip = if poses == Poses::Mixed { "mixed" } else { &description.clips[sample.record.clip] };
         let caption = format!("{clip} {}", sample.record.frame);
         text::write(&mut sheet, [corner[0], corner[1] + VIEW[1] + 5], pair[0] - GAP, &caption);
     }

@@ -4,6 +4,7 @@
 mod animation;
 mod colour;
 mod file;
+mod look;
 mod nodes;
 mod pack;
 mod part;
@@ -13,12 +14,14 @@ mod vrm;
 mod weld;
 mod write;
 
+pub use look::Look;
 pub use pack::pack;
 pub use weld::Source;
 pub use write::{Appearance, write_character, write_garment, write_part};
 
+use crate::mesh::{bounds, triangle};
 use crate::{Character, Clip, Garment, Mesh, SkinWeights, SkinnedMesh};
-use crate::{Error, Result, mesh::triangle};
+use crate::{Error, Result};
 use file::File;
 use glam::{DAffine3, DVec3};
 use kiddo::{ImmutableKdTree, SquaredEuclidean};
@@ -36,11 +39,45 @@ type Read<T> = std::result::Result<T, String>;
 ///
 /// All skinned meshes become one body. The glTF skin with most vertices sets the canonical space. A vertex without
 /// weights takes those of the nearest vertex that has some, or follows the hip when none has. A body that faces inwards
-/// is turned. Morph targets are taken as exported: by the weights of their mesh. Meshes without a skin and animations
-/// that move no joint are left out. A file without clips is accepted, see [`Character::clip`].
+/// is turned. Hair, eyes and accessories, by their names, are drawn, but hold no cloth. Morph targets are taken as
+/// exported: by the weights of their mesh. Meshes without a skin and animations that move no joint are left out. A file
+/// without clips is accepted, see [`Character::clip`].
 pub fn read_character(path: &Path, rate: f64) -> Result<Character> {
     let file = File::open(path)?;
     character(&file, rate).map_err(|reason| Error::File { path: path.into(), reason })
+}
+
+/// A mesh of a character's file, as far as one material goes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Listed {
+    /// Names of its node and its material.
+    pub name: String,
+    /// What it looks like.
+    pub look: Look,
+    /// Whether its names say so; else its place on the body does.
+    pub named: bool,
+    /// Vertices and triangles.
+    pub size: [usize; 2],
+    /// Whether it follows joints; what does not is left out of characters.
+    pub skinned: bool,
+}
+
+/// The parts of a character's file, in its order.
+pub fn read_parts(path: &Path) -> Result<Vec<Listed>> {
+    let file = File::open(path)?;
+    listed(&file).map_err(|reason| Error::File { path: path.into(), reason })
+}
+
+/// The `wanted` parts of a character's file apart from the others: as a garment, canonical, metres; and the character
+/// of the others.
+pub fn part_character(path: &Path, rate: f64, wanted: &[usize]) -> Result<(Garment, Character)> {
+    let file = File::open(path)?;
+    let apart = || {
+        let rest = character_of(&file, rate, |part| !wanted.contains(&part))?;
+        let (garment, _) = garment_of(&file, rest.metres_per_unit, |part| wanted.contains(&part))?;
+        Ok((garment, rest))
+    };
+    apart().map_err(|reason| Error::File { path: path.into(), reason })
 }
 
 /// Reads a garment modelled on a character in its canonical pose; `scale` = `metres_per_unit` of that character.
@@ -53,6 +90,11 @@ pub fn read_garment(path: &Path, scale: f64) -> Result<(Garment, Source)> {
 }
 
 fn character(file: &File, rate: f64) -> Read<Character> {
+    character_of(file, rate, |_| true)
+}
+
+/// The character of the parts that are `kept`, by their numbers, on the skeleton of all.
+fn character_of(file: &File, rate: f64, kept: impl Fn(usize) -> bool) -> Read<Character> {
     if !(rate.is_finite() && rate > 0.0) {
         return Err(format!("wanted a positive number of poses per second, found {rate}"));
     }
@@ -66,6 +108,7 @@ fn character(file: &File, rate: f64) -> Read<Character> {
     let upright = skeleton.upright()?;
     let metres_per_unit = metres_per_unit(&body(&parts, &skeleton, upright, 1.0)?)?;
     let canonical = DAffine3::from_scale(DVec3::splat(metres_per_unit)) * upright;
+    let parts: Vec<Part> = parts.into_iter().enumerate().filter(|(at, _)| kept(*at)).map(|(_, part)| part).collect();
     let mut welded = body(&parts, &skeleton, canonical, metres_per_unit)?.weld();
     if welded.mesh.triangles.is_empty() {
         return Err("no triangle of its skinned mesh has an area".to_string());
@@ -98,7 +141,8 @@ fn body(parts: &[Part], skeleton: &Skeleton, canonical: DAffine3, scale: f64) ->
 fn add(soup: &mut Soup, part: &Part, positions: Vec<DVec3>, weights: Vec<SkinWeights>, to_world: DAffine3) {
     let Part { uv, pinned, triangles, colour, .. } = part.clone();
     let turn = to_world.matrix3.determinant() < 0.0;
-    soup.add(Soup { positions, weights, uv, pinned, triangles, colour, ..Soup::default() }, turn);
+    let is_loose = Look::named(&part.names).is_some_and(|look| !look.holds_cloth());
+    soup.add(Soup { positions, weights, uv, pinned, triangles, colour, is_loose, ..Soup::default() }, turn);
 }
 
 /// Turns the triangles of a body that faces inwards as a whole: they tell cloth which side is out.
@@ -169,6 +213,11 @@ fn clips(file: &File, nodes: &Nodes, skeleton: &Skeleton, rate: f64, scale: f64)
 }
 
 fn garment(file: &File, scale: f64) -> Read<(Garment, Source)> {
+    garment_of(file, scale, |_| true)
+}
+
+/// The garment of the parts that are `kept`, by their numbers.
+fn garment_of(file: &File, scale: f64, kept: impl Fn(usize) -> bool) -> Read<(Garment, Source)> {
     if !(scale.is_finite() && scale > 0.0) {
         return Err(format!("wanted a positive scale in metres per unit, found {scale}"));
     }
@@ -178,7 +227,7 @@ fn garment(file: &File, scale: f64) -> Read<(Garment, Source)> {
     let skeleton = Skeleton::read(file, &nodes, &parts)?;
     let mut soup = Soup::default();
     let metres = DAffine3::from_scale(DVec3::splat(scale));
-    for part in &parts {
+    for part in parts.iter().enumerate().filter(|(at, _)| kept(*at)).map(|(_, part)| part) {
         let skinned = skeleton.as_ref().filter(|_| part.skin.is_some());
         let (positions, to_world) = match skinned {
             Some(skeleton) => {
@@ -204,3 +253,32 @@ fn garment(file: &File, scale: f64) -> Read<(Garment, Source)> {
 
 #[cfg(test)]
 mod tests;
+
+/// What the parts of a file are.
+fn listed(file: &File) -> Read<Vec<Listed>> {
+    let nodes = Nodes::read(&file.document)?;
+    let parts = part::read(file)?;
+    let skeleton = Skeleton::read(file, &nodes, &parts)?.ok_or("has no skin: wanted a rigged character")?;
+    let canonical = skeleton.upright()?;
+    let joints = skeleton.joints(canonical, 1.0)?;
+    let worlds = nodes.worlds(&nodes.rest);
+    let place = |part: &Part| match part.skin {
+        Some(_) => skeleton.canonical_positions(part, &joints, canonical, 1.0),
+        None => part.positions.iter().map(|&v| worlds[part.node].transform_point3(v)).collect(),
+    };
+    let places: Vec<Vec<DVec3>> = parts.iter().map(place).collect();
+    let whole = bounds(places.iter().flatten().copied());
+    let list = |(part, places): (&Part, &Vec<DVec3>)| Listed {
+        name: [&part.names[2], &part.names[0]]
+            .into_iter()
+            .filter(|name| !name.is_empty())
+            .cloned()
+            .collect::<Vec<_>>()
+            .join(", "),
+        named: Look::named(&part.names).is_some(),
+        look: Look::named(&part.names).unwrap_or_else(|| Look::placed(bounds(places.iter().copied()), whole)),
+        size: [part.positions.len(), part.triangles.len()],
+        skinned: part.skin.is_some(),
+    };
+    Ok(parts.iter().zip(&places).map(list).collect())
+}

@@ -30,6 +30,8 @@ pub(super) struct Part {
     pub triangles: Vec<[u32; 3]>,
     /// [v] linear RGB.
     pub colour: Vec<[f32; 3]>,
+    /// Names in the file that may tell what it is: of its material, its mesh, its node.
+    pub names: [String; 3],
 }
 
 /// Every triangle primitive of every mesh node, in the order of the file.
@@ -46,6 +48,9 @@ pub(super) fn read(file: &File) -> Read<Vec<Part>> {
             if let Some(mut part) = read_primitive(file, &primitive, node.index(), skin, &mut painter).map_err(place)? {
                 part.pinned = pinned(file, pins, part.positions.len()).map_err(place)?;
                 morph(file, &primitive, weights, &mut part.positions).map_err(place)?;
+                let mesh = mesh.iter().find_map(|mesh| mesh.name());
+                let names = [primitive.material().name(), mesh, node.name()];
+                part.names = names.map(|name| name.unwrap_or_default().to_owned());
                 parts.push(part);
             }
         }
@@ -92,6 +97,7 @@ fn read_primitive(
         pinned: Vec::new(),
         triangles,
         colour,
+        names: Default::default(),
     }))
 }
 

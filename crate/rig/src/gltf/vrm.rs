@@ -1,7 +1,7 @@
 //! The parts of a body that a VRM file names: `VRM` (0.x) lists bones, `VRMC_vrm` (1.0) maps them. Both are said in the
 //! names that this project gives parts, those of Mixamo's skeleton.
 
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::collections::BTreeMap;
 
 /// VRM's names of the trunk, and ours.
@@ -34,6 +34,24 @@ pub(super) fn parts(json: &Value) -> BTreeMap<String, usize> {
     let mapped = bones("VRMC_vrm").as_object().into_iter().flatten();
     let mapped = mapped.filter_map(|(name, bone)| Some((part(name)?, node(bone)?)));
     listed.chain(mapped).collect()
+}
+
+/// The extension `VRMC_vrm` (1.0) of these parts and their nodes: its bones alone, for whose the character is and what
+/// may be done with it nobody has said here. None where no part is one of its bones.
+pub(super) fn extension(parts: &BTreeMap<String, usize>) -> Option<Value> {
+    let bones = parts.iter().filter_map(|(part, node)| Some((bone(part)?, json!({ "node": node }))));
+    let bones: serde_json::Map<String, Value> = bones.collect();
+    (!bones.is_empty()).then(|| json!({ "specVersion": "1.0", "humanoid": { "humanBones": bones } }))
+}
+
+/// The VRM bone of our name.
+fn bone(part: &str) -> Option<String> {
+    if let Some((bone, _)) = TRUNK.iter().find(|(_, name)| *name == part) {
+        return Some(bone.to_string());
+    }
+    let sides = [("Left", "left"), ("Right", "right")];
+    let (side, rest) = sides.iter().find_map(|(ours, theirs)| Some((theirs, part.strip_prefix(ours)?)))?;
+    LIMBS.iter().find(|(_, name)| *name == rest).map(|(bone, _)| format!("{side}{bone}"))
 }
 
 /// Our name of a VRM bone; `None` for those that motion does not turn.

@@ -26,6 +26,10 @@ pub(super) struct Soup {
     pub triangles: Vec<[u32; 3]>,
     /// Linear RGB per vertex. [v]
     pub colour: Vec<[f32; 3]>,
+    /// Whether cloth passes through it, as through hair.
+    pub is_loose: bool,
+    /// [t] that of the part each triangle is of.
+    pub loose: Vec<bool>,
     /// [v] number of each vertex in the file, counted through its parts.
     pub numbers: Vec<u32>,
     /// Numbers of vertices that no triangle uses.
@@ -34,7 +38,7 @@ pub(super) struct Soup {
 
 /// A welded mesh, its weights, and the surface that draws it.
 pub(super) struct Welded {
-    /// Without degenerate triangles.
+    /// Without degenerate triangles, and those that cloth passes through.
     pub mesh: Mesh,
     /// [mesh vertices]
     pub weights: Vec<SkinWeights>,
@@ -82,6 +86,7 @@ impl Soup {
                 corners.swap(1, 2);
             }
             self.triangles.push(corners);
+            self.loose.push(part.is_loose);
         }
         self.unused.extend((first..).zip(&place).filter(|(_, place)| place.is_none()).map(|(number, _)| number));
     }
@@ -120,7 +125,10 @@ impl Soup {
         let flat = |(triangle, _): &(&[u32; 3], &[u32; 3])| degenerate(**triangle, &positions, cell);
         let flat = triangles.iter().zip(&self.triangles).filter(flat);
         let flat = flat.map(|(_, drawn)| drawn.map(|corner| self.numbers[corner as usize])).collect();
-        triangles.retain(|&triangle| !degenerate(triangle, &positions, cell));
+        // A body of hair alone is a body.
+        let all = self.loose.iter().all(|loose| *loose);
+        let mut loose = self.loose.iter().map(|loose| *loose && !all);
+        triangles.retain(|&triangle| !loose.next().unwrap_or_default() && !degenerate(triangle, &positions, cell));
         let mut pins: Vec<u32> = (0..vertex.len()).filter(|&at| self.pinned[at]).map(|at| vertex[at]).collect();
         pins.sort_unstable();
         pins.dedup();

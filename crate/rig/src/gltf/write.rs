@@ -2,12 +2,14 @@
 //! have no defaults, which tripled this file), the container comes from the `gltf` crate. Positions are f32,
 //! metres.
 
+use super::vrm;
 use crate::file::write;
-use crate::mesh::bounds;
+use crate::mesh::{bounds, triangle};
 use crate::{Character, Clip, Error, Garment, Mesh, Result, SkinWeights, Surface};
 use ::gltf::binary::{Glb, Header};
 use glam::{DAffine3, DMat4, DQuat, DVec3};
 use serde_json::{Value, json};
+use std::collections::HashSet;
 use std::path::Path;
 
 const F32: u32 = 5126;
@@ -34,7 +36,8 @@ impl Default for Appearance {
 
 /// Writes a character as GLB: the body with its skin, and one animation per clip, sampled at the clip's rate.
 ///
-/// Joints become nodes with translation, rotation and scale; shear in a pose is lost. The file's own pose is the
+/// Joints become nodes with translation, rotation and scale; shear in a pose is lost. Named parts become VRM's bones.
+/// What is drawn and holds no cloth is a primitive of its own, whose material is named hair. The file's own pose is the
 /// canonical one, so a character of 0.1 to 10 m reads back with `metres_per_unit` 1.
 pub fn write_character(path: &Path, character: &Character, appearance: &Appearance) -> Result<()> {
     let mut file = Writer::default();
@@ -72,6 +75,10 @@ pub fn write_character(path: &Path, character: &Character, appearance: &Appearan
     });
     if !animations.is_empty() {
         document["animations"] = json!(animations);
+    }
+    if let Some(bones) = vrm::extension(&character.parts) {
+        document["extensionsUsed"] = json!(["VRMC_vrm"]);
+        document["extensions"] = json!({ "VRMC_vrm": bones });
     }
     file.save(path, document)
 }
@@ -150,7 +157,7 @@ impl Writer {
         self.accessors[accessor]["max"] = json!(high.to_array()[..width]);
     }
 
-    /// A list with the one primitive of a mesh; colours become COLOR_0.
+    /// The primitives of a mesh: one, and one of what of its surface is not in it. Colours become COLOR_0.
     fn primitives(
         &mut self,
         mesh: &Mesh,
@@ -178,13 +185,27 @@ impl Writer {
             let colours = surface.colour.iter().flatten().map(|&channel| f64::from(channel));
             attributes["COLOR_0"] = json!(self.floats("VEC3", 3, colours));
         }
-        let corners = triangles.iter().flatten().flat_map(|corner| corner.to_le_bytes());
-        let indices = self.accessor("SCALAR", U32, 3 * triangles.len(), corners);
         let [red, green, blue] = if painted { [1.0; 3] } else { appearance.colour };
         let material = json!({ "pbrMetallicRoughness": { "baseColorFactor": [red, green, blue, 1.0],
             "metallicFactor": 0.0, "roughnessFactor": appearance.roughness }, "doubleSided": weights.is_none() });
-        self.materials.push(material);
-        json!([{ "attributes": attributes, "indices": indices, "material": self.materials.len() - 1 }])
+        let known: HashSet<[u32; 3]> = mesh.triangles.iter().copied().collect();
+        let loose = |triangle: &&[u32; 3]| {
+            let corners = triangle.map(|corner| vertex[corner as usize]);
+            let area = || triangle::area(corners.map(|corner| mesh.positions[corner as usize]));
+            weights.is_some() && !known.contains(&corners) && area() > 1e-12
+        };
+        let (hair, body): (Vec<&[u32; 3]>, Vec<&[u32; 3]>) = triangles.iter().partition(loose);
+        let mut primitives = Vec::new();
+        for (triangles, name) in [(body, None), (hair, Some("hair"))].into_iter().filter(|(list, _)| !list.is_empty()) {
+            let corners = triangles.iter().copied().flatten().flat_map(|corner| corner.to_le_bytes());
+            let indices = self.accessor("SCALAR", U32, 3 * triangles.len(), corners);
+            let mut material = material.clone();
+            name.iter().for_each(|name| material["name"] = json!(name));
+            self.materials.push(material);
+            let material = self.materials.len() - 1;
+            primitives.push(json!({ "attributes": attributes, "indices": indices, "material": material }));
+        }
+        json!(primitives)
     }
 
     /// JOINTS_n and WEIGHTS_n, four joints each, as many sets as the richest vertex needs.

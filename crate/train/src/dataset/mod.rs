@@ -63,6 +63,13 @@ impl Dataset {
         }
         Ok(Self { rejected, setup, samples, mixed_rejected, mixed })
     }
+
+    /// The frames that were left out, read from the `folder` of this dataset: how their cloth ended.
+    pub fn left_out(&self, folder: &Path) -> Result<Vec<Sample>> {
+        let (joints, vertices) = (self.setup.description.joints.len(), self.setup.template.len() / 3);
+        let read = |record: &Record| Sample::read(&pose_path(folder, record.clip, record.frame), joints, vertices);
+        self.rejected.iter().map(read).collect()
+    }
 }
 
 /// A value of a file's metadata.

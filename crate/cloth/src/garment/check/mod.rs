@@ -2,9 +2,12 @@
 //! numbers. Errors stop every command that wants the garment; warnings are said and the work goes on.
 
 mod fit;
+mod sketch;
 #[cfg(test)]
 mod test;
 mod topology;
+
+pub use sketch::{Fault, sketch};
 
 pub(super) use fit::{INWARDS, Outside, Place, inside, inwards, mistaken};
 pub(super) use topology::{HOLE_EDGES, HOLE_SHARE, SLIVER};
@@ -12,6 +15,7 @@ pub(super) use topology::{HOLE_EDGES, HOLE_SHARE, SLIVER};
 use super::resampling::{Resample, resample};
 use super::{hold, mend};
 use crate::simulate::{Elements, Material, Settings, Simulator};
+use crate::wrap::{bones, complete};
 use crate::{Error, Result};
 use ctsn_rig::gltf::{Source, read_garment};
 use ctsn_rig::{Character, Garment};
@@ -64,17 +68,27 @@ fn crossings(garment: &Garment, source: &Source, findings: &mut Findings) {
     }
 }
 
-/// Mends a garment, makes the mesh to simulate where `wanted`, finds what holds it, and checks it. What makes it
-/// unusable is an error, which names all that does.
+/// Opens and mends a garment, adds to the body what is missing under it, makes the mesh to simulate where `wanted`, finds
+/// what holds the garment, and checks it. What makes it unusable is an error, which names all that does.
 ///
-/// Whatever simulates a garment takes it from here, so that what this accepts is what is simulated.
-pub fn fit(character: &Character, garment: Garment, source: Source, wanted: Resample) -> Result<Fitted> {
-    fit_beside(&Outside::new(character)?, garment, source, wanted)
+/// Whatever simulates a garment takes it and the body from here, so that what this accepts is what is simulated.
+pub fn fit(character: &mut Character, garment: Garment, source: Source, wanted: Resample) -> Result<Fitted> {
+    let mut mended = Vec::new();
+    let (garment, source) = mend::open(character, &bones(character), garment, source, &mut mended);
+    mended.extend(complete(character, &garment.mesh));
+    fit_beside(&Outside::new(character)?, garment, source, wanted, mended)
 }
 
-/// The same beside a body whose outer skin is known.
-pub(super) fn fit_beside(outside: &Outside, garment: Garment, source: Source, wanted: Resample) -> Result<Fitted> {
-    let (garment, source, mut mended) = mend::mend(garment, source);
+/// The same beside a body that is whole and whose outer skin is known; `mended`: what was already.
+pub(super) fn fit_beside(
+    outside: &Outside,
+    garment: Garment,
+    source: Source,
+    wanted: Resample,
+    mut mended: Vec<String>,
+) -> Result<Fitted> {
+    let (garment, source, faces) = mend::mend(garment, source);
+    mended.extend(faces);
     let (mut garment, source) = resample(outside, garment, source, wanted, &mut mended);
     let mut findings = Findings::default();
     mend::place(outside, &mut garment, &source, &mut mended, &mut findings);
@@ -97,8 +111,8 @@ pub(super) fn fit_beside(outside: &Outside, garment: Garment, source: Source, wa
     }
 }
 
-/// Reads a garment and fits it.
-pub fn load(path: &Path, character: &Character, wanted: Resample) -> Result<Fitted> {
+/// Reads a garment and fits it; the character's body is completed under it.
+pub fn load(path: &Path, character: &mut Character, wanted: Resample) -> Result<Fitted> {
     let (garment, source) = read_garment(path, character.metres_per_unit)?;
     fit(character, garment, source, wanted).map_err(|error| match error {
         Error::Garment(reason) => Error::File { path: path.into(), reason },

@@ -6,11 +6,13 @@ mod faces;
 mod holes;
 mod lift;
 mod patch;
+mod plugs;
 mod slivers;
 #[cfg(test)]
 mod test;
 
 pub(super) use lift::place;
+pub(super) use plugs::open;
 
 use super::check::list;
 use ctsn_rig::Garment;

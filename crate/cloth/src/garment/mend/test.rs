@@ -3,7 +3,7 @@
 
 use crate::garment::check::{Fitted, Outside, SLIVER, fit_beside};
 use crate::garment::test::person;
-use crate::garment::{Cut, Kind, Resample, quality, rehearse, shell};
+use crate::garment::{Cut, Kind, Resample, fit, quality, rehearse, shell};
 use crate::simulate::{Elements, Material, Settings, Simulator};
 use ctsn_rig::gltf::Source;
 use ctsn_rig::mesh::triangle::least_angle;
@@ -23,7 +23,7 @@ fn cut(kind: Kind) -> Garment {
 
 fn fitted(garment: Garment) -> crate::Result<Fitted> {
     let numbers = (100..100 + garment.mesh.positions.len() as u32).collect();
-    fit_beside(&OUTSIDE, garment, Source { numbers, ..Source::default() }, Resample::Never)
+    fit_beside(&OUTSIDE, garment, Source { numbers, ..Source::default() }, Resample::Never, Vec::new())
 }
 
 /// The sound garment after `spoil`, mended; what was said must hold all words.
@@ -162,6 +162,67 @@ fn a_waistband_is_found_and_what_falls_is_refused() {
     wide.mesh.positions.iter_mut().for_each(|p| (p.x, p.z) = (1.6 * p.x, 1.6 * p.z));
     let message = fitted(wide).unwrap_err().to_string();
     assert!(message.contains("would fall") && message.contains("_PIN"), "{message}");
+}
+
+/// The person without the skin that a garment covers: no trunk, no upper arms.
+fn hollow() -> Character {
+    let mut hollow = PERSON.clone();
+    let bare = |name: &str| ["hip", "chest", "arm.l", "arm.r"].contains(&name);
+    hollow.body = PERSON.body.part(|joint| !bare(&PERSON.joints[joint].name));
+    hollow
+}
+
+/// Numbers of a file that counts from 0.
+fn plain(garment: &Garment) -> Source {
+    Source { numbers: (0..garment.mesh.positions.len() as u32).collect(), ..Source::default() }
+}
+
+#[test]
+fn a_body_is_made_where_skin_is_missing() {
+    let mut sound = PERSON.clone();
+    fit(&mut sound, SHIRT.clone(), plain(&SHIRT), Resample::Never).expect("a fit");
+    assert_eq!(sound.body, PERSON.body, "nothing was missing");
+    let mut hollow = hollow();
+    let before = hollow.body.clone();
+    let fitted = fit(&mut hollow, SHIRT.clone(), plain(&SHIRT), Resample::Never).expect("a fit");
+    let said = &fitted.mended[0];
+    for word in ["no skin", "chest", "arm.l", "--body"] {
+        assert!(said.contains(word), "{word}: {said}");
+    }
+    assert!(!said.contains("head") && !said.contains("shin.l"), "{said}");
+    let made = Mesh {
+        positions: hollow.body.mesh.positions.clone(),
+        triangles: hollow.body.mesh.triangles[before.mesh.triangles.len()..].to_vec(),
+    };
+    assert!(quality(&made).manifold && quality(&made).loops == 0, "closed");
+    let chest = DVec3::new(0.0, 1.3, 0.0);
+    let angle: f64 = made.corners().map(|corners| ctsn_rig::mesh::triangle::solid_angle(chest, corners)).sum();
+    assert!((angle - 4.0 * std::f64::consts::PI).abs() < 1e-6, "around the chest, and right side out");
+    for row in &hollow.body.weights[before.weights.len()..] {
+        let sum: f64 = row.iter().map(|(_, weight)| weight).sum();
+        assert!((sum - 1.0).abs() < 1e-9 && row.iter().all(|(joint, _)| *joint < hollow.joints.len()));
+    }
+    rehearse(&hollow, &fitted.garment, 0.03).expect("a drape");
+}
+
+#[test]
+fn plugs_that_hide_a_missing_body_are_opened() {
+    let edges = ctsn_rig::mesh::Edges::new(&SHIRT.mesh.triangles);
+    let mut bag = Garment { surface: Default::default(), ..SHIRT.clone() };
+    // Every opening but the collar is closed by a cone.
+    for rim in edges.rims().iter().filter(|rim| SHIRT.mesh.positions[rim[0][0] as usize].y < 1.4) {
+        let ends = rim.iter().map(|edge| SHIRT.mesh.positions[edge[0] as usize]);
+        let apex = ends.clone().sum::<DVec3>() / rim.len() as f64;
+        let inwards = (DVec3::new(0.0, 1.25, 0.0) - apex).normalize();
+        bag.mesh.positions.push(apex + 0.02 * inwards);
+        let apex = bag.mesh.positions.len() as u32 - 1;
+        bag.mesh.triangles.extend(rim.iter().map(|[a, b]| [*b, *a, apex]));
+    }
+    assert!(bag.mesh.triangles.len() > SHIRT.mesh.triangles.len() + 30);
+    let numbers = plain(&bag);
+    let fitted = fit(&mut hollow(), bag, numbers, Resample::Never).expect("a fit");
+    assert!(fitted.mended[0].contains("3 openings"), "{:?}", fitted.mended);
+    assert_eq!(fitted.garment.mesh.triangles.len(), SHIRT.mesh.triangles.len());
 }
 
 /// Spoils a garment in some of nine ways.

@@ -179,7 +179,7 @@ fn what_is_asked_for_is_read_and_said() {
 fn a_layered_garment_is_fit_to_be_simulated() {
     let garment = skirt(150, 70, 12);
     let Fitted { garment, mended, .. } =
-        fit_beside(&OUTSIDE, garment.clone(), source(&garment), Resample::Auto).unwrap();
+        fit_beside(&OUTSIDE, garment.clone(), source(&garment), Resample::Auto, Vec::new()).unwrap();
     assert!(mended.iter().any(|said| said.contains("even mesh of its own")), "{mended:?}");
     let drawn = garment.drawn.unwrap();
     let count = garment.mesh.positions.len() as u32;

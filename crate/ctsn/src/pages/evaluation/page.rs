@@ -70,8 +70,15 @@ const MEANINGS: [(&str, &str); 13] = [
     ("plain skinning", "The garment at rest, moved by the skin weights of the nearest body vertices."),
 ];
 
-/// The page of a report, with `training` charts (may be empty), pictures of some frames, and facts on the model.
-pub fn report(report: &Report, training: &[Chart], gallery: &Gallery, facts: &[(&str, String)]) -> Result<String> {
+/// The page of a report, with `training` charts (may be empty), pictures of some frames, facts on the model, and what
+/// stands before and after all that.
+pub fn report(
+    report: &Report,
+    training: &[Chart],
+    gallery: &Gallery,
+    facts: &[(&str, String)],
+    [before, after]: &[Markup; 2],
+) -> Result<String> {
     let title = format!("{} on {}", report.garment, report.character);
     let curves: Vec<Markup> = training.iter().map(Chart::draw).collect::<Result<_>>()?;
     let body = html! {
@@ -81,6 +88,7 @@ pub fn report(report: &Report, training: &[Chart], gallery: &Gallery, facts: &[(
             (report.clips.len()) " clips."
         }
         (tiles(report))
+        (before)
         h2 { "Ways to predict" }
         div class="first" { (ways(report)) }
         h2 { "Folds" }
@@ -103,6 +111,7 @@ pub fn report(report: &Report, training: &[Chart], gallery: &Gallery, facts: &[(
         (by_joint(report))
         h2 { "The model" }
         dl { @for (name, fact) in facts { dt { (name) } dd { (fact) } } }
+        (after)
         h2 { "What the figures mean" }
         dl { @for (name, meaning) in MEANINGS { dt { (name) } dd { (meaning) } } }
     };

@@ -1,0 +1,67 @@
+//! Poses that would be left out for a few vertices. Where the body passes into itself cloth is let go, and tight cloth
+//! then pulls it on, deep into a knee and out of the crease's reach. Such vertices are put out of the body again and
+//! held there, as what grips them would; what crosses is smoothed apart; and the cloth is relaxed once more.
+//! simulation.md §2.3.
+
+use glam::{DAffine3, DVec3};
+
+use super::contact::Pin;
+use super::newton::Solver;
+use super::outcome::Outcome;
+use super::posed::PosedBody;
+use super::simulator::Simulator;
+use super::untangle::untangle;
+use ctsn_rig::Pose;
+
+/// How often a pose is tried again: what is held may draw its neighbours in, which are then held as well.
+const ROUNDS: usize = 4;
+/// How far a vertex is put out at most, metres. Tight trousers are pulled 30 mm into a bent knee.
+const FURTHEST: f64 = 0.06;
+/// Stiffness of what holds it, N/m: that of a few contacts, so that a stretch of a tenth moves it by millimetres.
+const GRIP: f64 = 1000.0;
+
+impl Simulator {
+    /// Relaxes the cloth on the posed body; again, where the outcome would be left out. `to_body`: from the solver's
+    /// space to the body frame of `pose`.
+    pub(super) fn settle<'a>(
+        &'a self,
+        mut solver: Solver<'a>,
+        body: &PosedBody,
+        iterations: usize,
+        pose: &Pose,
+        to_body: DAffine3,
+    ) -> Outcome {
+        let relaxed = solver.relax(Some(body), iterations);
+        let mut outcome = self.outcome(&solver, relaxed, pose, to_body);
+        for _ in 0..ROUNDS {
+            if outcome.converged() {
+                break;
+            }
+            let (mut positions, held) = self.put_out(&solver, pose, to_body);
+            if !untangle(&self.level.cloth.elements, &self.level.rings, &mut positions) {
+                break;
+            }
+            let mut again = self.level.solver(&self.settings, positions);
+            again.iterations = solver.iterations;
+            again.pins = std::mem::take(&mut solver.pins);
+            again.pins.extend(held);
+            let relaxed = again.relax(Some(body), iterations);
+            (outcome, solver) = (self.outcome(&again, relaxed, pose, to_body), again);
+        }
+        outcome
+    }
+
+    /// The cloth with every vertex outside that is inside the body and has a way out; what holds those that were let
+    /// go.
+    fn put_out(&self, solver: &Solver, pose: &Pose, to_body: DAffine3) -> (Vec<DVec3>, Vec<Pin>) {
+        let mut placed: Vec<DVec3> = solver.positions.iter().map(|p| to_body.transform_point3(*p)).collect();
+        let free = self.free(pose, &placed);
+        self.body.lift(pose, &mut placed, FURTHEST, |vertex| free.contains(&vertex));
+        let from_body = to_body.inverse();
+        let mut positions = solver.positions.clone();
+        free.iter().for_each(|&vertex| positions[vertex] = from_body.transform_point3(placed[vertex]));
+        let held = free.into_iter().filter(|&vertex| solver.is_let_go(vertex));
+        let held = held.map(|vertex| Pin { vertex, target: positions[vertex], stiffness: GRIP }).collect();
+        (positions, held)
+    }
+}
