@@ -72,7 +72,7 @@ async function prepareCases(ctsn, folder) {
   await need(ctsn, ['bench', '--write-model', file('bench.safetensors')]);
   withoutBody(file('bench.safetensors'), file('bare.safetensors'));
   writeFileSync(file('chain.bin'), chain());
-  copyFileSync(at('www', 'public', 'tshirt.safetensors'), file('demo.safetensors'));
+  copyFileSync(at('tests', 'data', 'tshirt.safetensors'), file('demo.safetensors'));
   const { model, poses } = await demo();
   model.dispose();
   writeFileSync(file('clips.bin'), Buffer.concat(poses.flat().map((pose) => Buffer.from(pose.buffer))));

@@ -43,7 +43,7 @@ async function holdUp({ entry, pose }) {
 export async function measureBlocks() {
   const { model, poses } = await demo();
   model.dispose();
-  const folders = { '/dist/': at('web', 'dist'), '/models/': at('www', 'public') };
+  const folders = { '/dist/': at('web', 'dist'), '/models/': at('tests', 'data') };
   const table = {};
   for (const [name, entry] of [["page's own thread", '/dist/index.js'], ['worker', '/dist/worker/index.js']]) {
     const rounds = [];

@@ -13,8 +13,8 @@ const UNSEEN = 0.1;
 /** The demo's model, and a pose for every frame of the unseen clips of its character. */
 export async function demo() {
   const { loadModel } = await import(at('web', 'dist', 'index.js'));
-  const model = await loadModel(readFileSync(at('www', 'public', 'tshirt.safetensors')));
-  const glb = readFileSync(at('www', 'public', 'andy.glb'));
+  const model = await loadModel(readFileSync(at('tests', 'data', 'tshirt.safetensors')));
+  const glb = readFileSync(at('tests', 'data', 'andy.glb'));
   const { scene, animations } = await new GLTFLoader().parseAsync(glb.buffer.slice(glb.byteOffset, glb.byteOffset + glb.length), '');
   const bones = model.joints.map((name) => scene.getObjectByName(name));
   const clips = animations.slice(-Math.ceil(UNSEEN * animations.length));

@@ -37,7 +37,7 @@ async function install(name, { folder: page = `examples/${name}`, packages = [],
   for (const [file, text] of Object.entries(files)) writeFileSync(path.join(folder, file), text);
   for (const [from, to] of [['andy.glb', 'character.glb'], ['tshirt.safetensors', 'model.safetensors']]) {
     // Of an import map's page the folder itself is served.
-    cpSync(at('www', 'public', from), path.join(folder, name === 'import-map' ? '.' : 'public', to));
+    cpSync(at('tests', 'data', from), path.join(folder, name === 'import-map' ? '.' : 'public', to));
   }
   await npm(folder, 'install', '--no-audit', '--no-fund', '--prefer-offline', tarball, ...packages);
   return folder;

@@ -6,13 +6,14 @@ import type { Figure } from './src/cast/catalogue.js';
 
 const here = (file: string) => fileURLToPath(new URL(file, import.meta.url));
 
-/** A figure as `cast.json` lists it: a file that does not have the usual name is named. */
-type Named<T> = Omit<T, 'file' | 'bytes' | 'picture' | 'garments'> & { file?: string };
+/** A figure or a garment as `cast.json` lists it. */
+type Named<T> = Omit<T, 'file' | 'bytes' | 'picture' | 'garments'>;
 type Listed = Named<Figure> & { garments: Named<Figure['garments'][number]>[] };
 
 /** The cast as a module: of what `cast.json` lists, that of which the files are in `public`. */
 function cast(): Plugin {
-  const find = (name: string, type: string, file = `cast/${name}.${type}`) => {
+  const find = (name: string, type: string) => {
+    const file = `cast/${name}.${type}`;
     const path = here(`public/${file}`);
     if (!existsSync(path)) return undefined;
     const content = readFileSync(path);
@@ -23,10 +24,10 @@ function cast(): Plugin {
   const read = (): Figure[] => {
     const listed = JSON.parse(readFileSync(here('cast.json'), 'utf8')) as Listed[];
     return listed.flatMap((figure) => {
-      const body = find(figure.id, 'glb', figure.file);
+      const body = find(figure.id, 'glb');
       const garments = figure.garments.flatMap((garment) => {
         const pair = `${figure.id}-${garment.id}`;
-        const model = find(pair, 'safetensors', garment.file);
+        const model = find(pair, 'safetensors');
         return model ? [{ ...garment, ...model, picture: find(pair, 'webp')?.file }] : [];
       });
       return body && garments.length > 0 ? [{ ...figure, ...body, picture: find(figure.id, 'webp')?.file, garments }] : [];

@@ -9,7 +9,7 @@ import { ask, out, Site } from './page.js';
 import { difference } from './safetensors.js';
 import tolerances from './tolerances.json' with { type: 'json' };
 
-const model = fileURLToPath(new URL('../../www/public/tshirt.safetensors', import.meta.url));
+const model = fileURLToPath(new URL('../../www/public/cast/andy-tshirt.safetensors', import.meta.url));
 /** Software rendering takes its time. */
 const patience = { timeout: 60_000 };
 let site: Site;

@@ -73,8 +73,8 @@ test('what is dropped is shown; what is broken is told in words, and what was sh
     await alert.getByRole('button', { name: 'Close' }).click();
     expect(await alert.isVisible()).toBe(false);
   };
-  const shirt = { name: 'my shirt.safetensors', buffer: readFileSync(file('public/tshirt.safetensors')) };
-  const man = { name: 'me.glb', buffer: readFileSync(file('public/andy.glb')) };
+  const shirt = { name: 'my shirt.safetensors', buffer: readFileSync(file('../tests/data/tshirt.safetensors')) };
+  const man = { name: 'me.glb', buffer: readFileSync(file('../tests/data/andy.glb')) };
   await give({ name: 'half.safetensors', buffer: shirt.buffer.subarray(0, 100_000) });
   await told(/^garment "half.safetensors": /);
   await give({ name: 'broken.glb', buffer: man.buffer.subarray(0, 5000) });

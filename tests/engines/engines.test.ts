@@ -11,7 +11,7 @@ const folders = {
   '/page/': at('tests/engines'),
   '/dist/': at('web/dist'),
   '/golden/': at('tests/golden'),
-  '/public/': at('www/public'),
+  '/models/': at('tests/data'),
   '/three/': at('node_modules/three'),
 };
 

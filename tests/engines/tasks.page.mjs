@@ -52,8 +52,8 @@ export async function refusals() {
 
 /** The demo's character in its garment, drawn by WebGL at two moments: how far the garment moved, m, and its pixels. */
 export async function dressed() {
-  const { scene: character, animations } = await new GLTFLoader().loadAsync('/public/andy.glb');
-  const model = await loadModel('/public/tshirt.safetensors');
+  const { scene: character, animations } = await new GLTFLoader().loadAsync('/models/andy.glb');
+  const model = await loadModel('/models/tshirt.safetensors');
   const cloth = new Cloth(model, character, new MeshBasicMaterial({ color: 'blue' }));
   const renderer = new WebGLRenderer({ preserveDrawingBuffer: true });
   renderer.setSize(320, 240, false);

@@ -102,7 +102,7 @@ test('a model whose mesh stream is nothing but zeros has none in the file', asyn
 });
 
 test('a trained model with a body: the whole network, and nothing of polish and repair', async () => {
-  const bytes = readFileSync(at('www/public/tshirt.safetensors'));
+  const bytes = readFileSync(at('tests/data/tshirt.safetensors'));
   // Without the body nothing is repaired, without steps nothing polished; in a pose that is trusted in full the
   // body counts for nothing else.
   const [whole, naked] = [await loadModel(bytes), await loadModel(withoutTensors(bytes, 'body.'), { polish: 0 })];

@@ -43,7 +43,7 @@ test('the qualities differ: full, coarse, skinned', async () => {
 });
 
 test('polish brings edges to the lengths they were cut to, by as many steps as a page asks for', async () => {
-  const path = fileURLToPath(new URL('../../www/public/tshirt.safetensors', import.meta.url));
+  const path = fileURLToPath(new URL('../../tests/data/tshirt.safetensors', import.meta.url));
   const [bytes, cut] = [readFileSync(path), readTensors(path).tensors['cloth.cut']!.values];
   const strain = async (polish?: number) => {
     const model = await loadModel(bytes, { polish });
@@ -104,7 +104,7 @@ test('a model says what it is made of, what it costs and what it learned from', 
   expect(bytes).toBeLessThan(3 * bytesOf('small').length);
   expect(model.info).toBe(model.info);
   model.dispose();
-  const shirt = await loadModel(new Uint8Array(readFileSync(new URL('../../www/public/tshirt.safetensors', import.meta.url))));
+  const shirt = await loadModel(new Uint8Array(readFileSync(new URL('../../tests/data/tshirt.safetensors', import.meta.url))));
   expect(shirt.info).toMatchObject({ polish: 16, knowsPoses: true, training: { character: 'andy.glb', version: expect.stringMatching(/\d/) as string } });
   expect(shirt.info.training!.clips!.length).toBeGreaterThan(10);
   expect(shirt.info.training!.distance).toBeGreaterThan(0.001);
