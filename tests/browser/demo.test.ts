@@ -129,7 +129,7 @@ test('?pose=CLIP:FRAME stops the page at that frame of the clip', async () => {
 });
 
 test('a failure is told on the page: no model, a broken model, no such clip or figure', async () => {
-  const shirt = '**/tshirt.safetensors?*';
+  const shirt = '**/andy-tshirt.safetensors?*';
   const missing = await site.visit('', (page) => page.route(shirt, (route) => route.fulfill({ status: 404 })));
   expect(await missing.page.getByRole('alert').textContent()).toMatch(/garment "tshirt".*HTTP 404/);
   const noModel = { body: 'no model at all' };
