@@ -59,6 +59,8 @@ const SHARES: [f64; 4] = [0.17, 0.05, 0.53, 0.22];
 /// poses there are at least.
 const FIRST: usize = 5;
 const FEWEST: usize = 60;
+/// Poses by which the time of one is measured.
+const TIMED: usize = 6;
 
 pub fn run(arguments: &Arguments) -> Result<()> {
     let Arguments { output, cut, options, training, .. } = arguments;
@@ -151,10 +153,10 @@ impl Steps<'_> {
         Ok(shown)
     }
 
-    /// Says how long it will take, from two poses.
+    /// Says how long it will take, from a few poses.
     fn estimate(&self, options: &simulate::Options, dataset: &Path, poses: usize) -> Result<()> {
-        let two = simulate::Options { poses: Some(2), ..options.clone() };
-        simulate::along(self.character, &self.simulation(&two, dataset), None)?;
+        let few = simulate::Options { poses: options.poses.map(|all| all.min(TIMED)), ..options.clone() };
+        simulate::along(self.character, &self.simulation(&few, dataset), None)?;
         let cores = std::thread::available_parallelism().map_or(1, usize::from) as f64;
         let pose = Report::new(dataset)?.seconds.median / cores;
         match self.budget {

@@ -9,7 +9,6 @@ mod hostile;
 mod layers;
 mod obstacle;
 mod pose;
-mod rescue;
 pub(super) mod scene;
 mod sphere;
 mod through;
