@@ -22,7 +22,7 @@ export interface PredictOptions {
 export interface Frame {
   /** Tells this answer of `predictCloth` from buffers. */
   readonly output: 'arrays';
-  /** World positions of the cloth vertices, or of the mesh that rides on the cloth where the file has one, metres [3·n]. */
+  /** World positions, metres [3·n]: of the cloth, or of the mesh that rides on it where the file has one. */
   readonly positions: Float32Array;
   /** Their world unit normals [3·n]. */
   readonly normals: Float32Array;

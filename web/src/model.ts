@@ -21,7 +21,7 @@ export class ClothModel extends EventTarget {
   readonly rootIndex: number;
   /** Inverse bind matrices in metres, row-major 3×4, one joint after the other [12·J]. */
   readonly inverseBind: Float32Array;
-  /** Vertices of the mesh that is predicted, n: of the cloth, or of the mesh that rides on it where the file has one. */
+  /** Vertices that are predicted, n: the cloth's, or those of the mesh that rides on it where the file has one. */
   readonly vertexCount: number;
   /** Triangles of that mesh, one vertex per position [3·t]. */
   readonly triangles: Uint32Array;

@@ -99,8 +99,8 @@ impl GpuPredictor {
         })
     }
 
-    /// Four buffers: positions of the shown mesh's vertices [3·n] and of the drawn ones [3·d], world, metres; then their
-    /// unit normals likewise. Tightly packed, to be used as vertex or storage buffers.
+    /// Four buffers: positions of the shown mesh's vertices [3·n] and of the drawn ones [3·d], world, metres; then
+    /// their unit normals likewise. Tightly packed, to be used as vertex or storage buffers.
     #[wasm_bindgen(unchecked_return_type = "[object, object, object, object]")]
     pub fn buffers(&self) -> Array {
         let it = &self.0;
