@@ -10,10 +10,10 @@ use std::path::PathBuf;
 /// List what a character's file is made of, and write character and garments apart
 ///
 /// Every mesh is listed with what it looks like: by the names of material, mesh and node, or, with a question mark, by
-/// where it is on the body. With -o FOLDER, every named top, skirt, dress or pair of trousers becomes a garment (top.glb
-/// …), and the rest is the character (character.glb), with its clips and, of a VRM file, its bones. Skin that was
-/// deleted under the clothes is made anew inside a garment when it is simulated. Hair, eyes and accessories stay on the
-/// character, but hold no cloth.
+/// where it is on the body. With -o FOLDER, every named top, skirt, dress or pair of trousers becomes a garment
+/// (top.glb …), and the rest is the character (character.glb), with its clips and, of a VRM file, its bones. Skin that
+/// was deleted under the clothes is made anew inside a garment when it is simulated. Hair, eyes and accessories stay on
+/// the character, but hold no cloth.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// The character (glTF)
@@ -60,7 +60,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     for (name, list) in &garments {
         let (garment, _) = part_character(&arguments.character, arguments.rate, list)?;
         let path = folder.join(format!("{name}.glb"));
-        gltf::write_garment(&path, &garment)?;
+        gltf::write_part(&path, &garment)?;
         println!("{}: {} vertices", path.display(), garment.mesh.positions.len());
     }
     let (_, character) = part_character(&arguments.character, arguments.rate, &worn)?;

@@ -19,8 +19,9 @@ const FAULTS: [(Fault, [f32; 3], &str); 4] = [
     (Fault::Sliver, [0.9, 0.25, 0.02], "slivers"),
 ];
 
-/// The page. `bare`: the character as its file has it; `complete`: with what was added to its body; `found`: the garment
-/// as its file has it with the faults of its vertices; `hung`: what it became and how far it moves until it hangs.
+/// The page. `bare`: the character as its file has it; `complete`: with what was added to its body; `found`: the
+/// garment as its file has it with the faults of its vertices; `hung`: what it became and how far it moves until it
+/// hangs.
 pub fn page(
     [garment, character]: [String; 2],
     bare: &Character,

@@ -68,8 +68,8 @@ fn crossings(garment: &Garment, source: &Source, findings: &mut Findings) {
     }
 }
 
-/// Opens and mends a garment, adds to the body what is missing under it, makes the mesh to simulate where `wanted`, finds
-/// what holds the garment, and checks it. What makes it unusable is an error, which names all that does.
+/// Opens and mends a garment, adds to the body what is missing under it, makes the mesh to simulate where `wanted`,
+/// finds what holds the garment, and checks it. What makes it unusable is an error, which names all that does.
 ///
 /// Whatever simulates a garment takes it and the body from here, so that what this accepts is what is simulated.
 pub fn fit(character: &mut Character, garment: Garment, source: Source, wanted: Resample) -> Result<Fitted> {

@@ -152,7 +152,6 @@ fn cloth_between_parts_that_pass_through_each_other_may_be_kept() {
         simulator.simulate(&simulator.drape().unwrap(), &crouched(&character))
     };
     let [left_out, kept] = [0.0, 0.05].map(outcome);
-    assert!(left_out.positions == kept.positions);
     let Status::Rejected { reason } = &left_out.status else { panic!("nothing is pinched") };
     assert!(reason.starts_with("wanted at most 0 % of the vertices"), "{reason}");
     assert!(kept.converged(), "{:?}", kept.status);
