@@ -20,6 +20,9 @@ const open = (page: Page, room: string) => page.locator('summary').filter({ hasT
 const capture = (page: Page) => ask(page, (demo) => demo.capture(), null);
 const confidence = async (page: Page) => Number.parseFloat((await page.textContent('#confidence'))!);
 
+/** The turns of a pose in an address, in steps. */
+const turns = (pose: string) => Float32Array.from(new Int16Array(Uint8Array.from(Buffer.from(pose.slice(1), 'base64url')).buffer.slice(12)));
+
 /** Where a joint of a captured pose is. */
 const jointAt = ({ joints, pose }: Awaited<ReturnType<typeof capture>>, name: string) =>
   pose.slice(16 * joints.indexOf(name) + 12, 16 * joints.indexOf(name) + 15);
@@ -113,7 +116,9 @@ test('the address keeps figure, garment, fabric, pose and view', async () => {
   expect(await again.page.getByRole('radio', { name: 'Denim' }).isChecked()).toBe(true);
   expect(await again.page.getByRole('radio', { name: 'Dots' }).isChecked()).toBe(true);
   await again.page.waitForTimeout(800);
-  expect(new URL(again.page.url()).searchParams.get('pose')).toBe(address.searchParams.get('pose'));
+  // Turns are made of unit length, which may move one by a step.
+  const [kept, rewritten] = [address, new URL(again.page.url())].map(({ searchParams }) => turns(searchParams.get('pose')!));
+  expect(difference(rewritten!, kept!)).toBeLessThanOrEqual(1);
   const broken = await site.visit('?wear=tshirt.tin.4a6b4f.dots');
   expect(await broken.page.getByRole('alert').textContent()).toContain('GARMENT.FABRIC.COLOUR.PRINT wanted');
   expect([...first.complaints, ...again.complaints]).toEqual([]);
@@ -126,7 +131,10 @@ test('garments that come and go leave the GPU as it was', async () => {
   for (let i = 0; i < 2; i++) for (const garments of [[], ['tshirt']]) await change(garments);
   const before = await memory();
   for (let i = 0; i < 8; i++) for (const garments of [[], ['tshirt']]) await change(garments);
-  expect(await memory()).toEqual(before);
+  // What fades away may still be there at the beginning.
+  const after = await memory();
+  expect(after.geometries).toBeLessThanOrEqual(before.geometries);
+  expect(after.textures).toBeLessThanOrEqual(before.textures);
   expect(before.geometries).toBeGreaterThan(2);
   expect(complaints).toEqual([]);
 });

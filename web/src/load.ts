@@ -18,8 +18,8 @@ export interface WasmSources extends CpuSources {
 /** How to load a model. */
 export interface LoadOptions extends DownloadOptions, WasmSources {
   /**
-   * Steps of the polish, which brings out the folds after each prediction: 0 (none) to 256, the next even number of
-   * them. The model file's own number (16, as `ctsn train` writes) if not given; no effect on a model without one.
+   * Steps of the polish, which brings out the folds after each prediction: 0 (none) to 256. The model file's own number
+   * (16, as `ctsn train` writes) if not given; no effect on a model without one.
    */
   polish?: number | undefined;
   /**
@@ -102,13 +102,15 @@ export async function loadModel(
 
 /** What ends a download: any of the caller's signals, or we, where a model is disposed of before it is complete. */
 function follow(signals: (AbortSignal | null | undefined)[]): { end: AbortController; done: () => void } {
-  const [end, listening] = [new AbortController(), new AbortController()];
-  for (const signal of signals) {
+  const end = new AbortController();
+  // Not by a signal that ends the listening: Node keeps both for ever.
+  const leave = signals.map((signal) => {
     const abort = (): void => end.abort(signal?.reason);
     if (signal?.aborted) abort();
-    signal?.addEventListener('abort', abort, { signal: listening.signal });
-  }
-  return { end, done: () => listening.abort() };
+    signal?.addEventListener('abort', abort);
+    return () => signal?.removeEventListener('abort', abort);
+  });
+  return { end, done: () => leave.forEach((one) => one()) };
 }
 
 /**

@@ -36,6 +36,8 @@ export class Poser {
 
   set shown(shown: boolean) {
     this.#layer.hidden = !shown;
+    // Nothing may be drawn for a while.
+    this.update();
   }
 
   /** Makes handles for a figure. */

@@ -9,7 +9,7 @@ use super::contact::Pin;
 use super::newton::Solver;
 use super::outcome::Outcome;
 use super::posed::PosedBody;
-use super::simulator::Simulator;
+use super::simulator::{Inside, Simulator};
 use super::untangle::untangle;
 use ctsn_rig::Pose;
 
@@ -37,7 +37,7 @@ impl Simulator {
             if outcome.converged() {
                 break;
             }
-            let (mut positions, held) = self.put_out(&solver, pose, to_body);
+            let Some((mut positions, held)) = self.put_out(&solver, pose, to_body) else { break };
             if !untangle(&self.level.cloth.elements, &self.level.rings, &mut positions) {
                 break;
             }
@@ -52,16 +52,19 @@ impl Simulator {
     }
 
     /// The cloth with every vertex outside that is inside the body and has a way out; what holds those that were let
-    /// go.
-    fn put_out(&self, solver: &Solver, pose: &Pose, to_body: DAffine3) -> (Vec<DVec3>, Vec<Pin>) {
+    /// go. `None` where too many have no way out: nothing helps them.
+    fn put_out(&self, solver: &Solver, pose: &Pose, to_body: DAffine3) -> Option<(Vec<DVec3>, Vec<Pin>)> {
         let mut placed: Vec<DVec3> = solver.positions.iter().map(|p| to_body.transform_point3(*p)).collect();
-        let free = self.free(pose, &placed);
+        let Inside { free, pinched, .. } = self.inside(pose, &placed);
+        if free.is_empty() && self.too_pinched(pinched) {
+            return None;
+        }
         self.body.lift(pose, &mut placed, FURTHEST, |vertex| free.contains(&vertex));
         let from_body = to_body.inverse();
         let mut positions = solver.positions.clone();
         free.iter().for_each(|&vertex| positions[vertex] = from_body.transform_point3(placed[vertex]));
         let held = free.into_iter().filter(|&vertex| solver.is_let_go(vertex));
         let held = held.map(|vertex| Pin { vertex, target: positions[vertex], stiffness: GRIP }).collect();
-        (positions, held)
+        Some((positions, held))
     }
 }

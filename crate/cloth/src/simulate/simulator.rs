@@ -156,7 +156,7 @@ impl Simulator {
             let (free, depth) = (free.len(), -1e3 * least);
             return reject(format!("wanted no vertex inside the body, found {free}, {depth:.2} mm deep"));
         }
-        if pinched as f64 > wanted.pinched * outcome.positions.len() as f64 {
+        if self.too_pinched(pinched) {
             let [wanted, found] =
                 [wanted.pinched, pinched as f64 / outcome.positions.len() as f64].map(|share| 100.0 * share);
             return reject(format!(
@@ -173,7 +173,7 @@ impl Simulator {
     }
 
     /// Vertices (body frame, metres) inside the body in `pose` (world).
-    fn inside(&self, pose: &Pose, placed: &[DVec3]) -> Inside {
+    pub(super) fn inside(&self, pose: &Pose, placed: &[DVec3]) -> Inside {
         let skin = self.collider.pose(&self.character.skinning(&to_body_frame(&self.character, pose)));
         let signed = self.body.signed(pose, placed);
         let mut inside = Inside::default();
@@ -188,9 +188,9 @@ impl Simulator {
         inside
     }
 
-    /// Vertices (body frame, metres) inside the body in `pose` (world) that have a way out.
-    pub(super) fn free(&self, pose: &Pose, placed: &[DVec3]) -> Vec<usize> {
-        self.inside(pose, placed).free
+    /// Whether more vertices than are wanted are where the body passes into itself.
+    pub(super) fn too_pinched(&self, pinched: usize) -> bool {
+        pinched as f64 > self.settings.pinched * self.level.rings.offsets.len().saturating_sub(1) as f64
     }
 
     /// `to_body`: from the solver's space to the body frame of `pose`.
@@ -244,11 +244,11 @@ impl Simulator {
 
 /// Vertices inside the body.
 #[derive(Default)]
-struct Inside {
+pub(super) struct Inside {
     /// Those with a way out.
-    free: Vec<usize>,
+    pub free: Vec<usize>,
     /// Those where the body passes into itself.
-    pinched: usize,
+    pub pinched: usize,
     /// Least signed distance of the former, metres.
-    least: f64,
+    pub least: f64,
 }

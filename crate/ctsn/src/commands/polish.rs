@@ -20,7 +20,7 @@ pub struct Arguments {
     pub model: PathBuf,
     /// A dataset of the same garment, as `ctsn simulate` leaves it
     pub dataset: PathBuf,
-    /// Steps; the next even number is taken, 0 is none. A finer mesh needs more
+    /// Steps; 0 is none. A finer mesh needs more
     #[arg(long, default_value_t = STEPS, value_parser = steps)]
     pub steps: usize,
     /// Model file to write
