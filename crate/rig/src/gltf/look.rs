@@ -74,7 +74,7 @@ impl Look {
                     word == known || word.strip_suffix('s') == Some(known) || word.strip_suffix("es") == Some(known)
                 })
             };
-            WORDS.iter().find(|(_, known)| known.iter().any(|known| fits(&known))).map(|(look, _)| *look)
+            WORDS.iter().find(|(_, known)| known.iter().any(fits)).map(|(look, _)| *look)
         };
         names.iter().find_map(said)
     }
