@@ -1,7 +1,7 @@
 //! The drawn mesh, no coarser than the cloth under it: where its edges are longer, the folds of the cloth would not be
 //! seen. Longest edges are halved until none is too long; the artist's vertices and seams stay.
 
-use ctsn_rig::mesh::{Edges, ordered};
+use ctsn_rig::mesh::{Edges, Side, ordered};
 use ctsn_rig::{Garment, Mesh, Surface};
 use std::collections::BTreeMap;
 
@@ -38,9 +38,8 @@ impl Split {
         let long = |(edge, _): &([u32; 2], &[_])| length(*edge) > longest;
         let chosen =
             edges.iter().filter(long).filter(|(edge, sides)| sides.iter().all(|s| most(s.triangle) == Some(*edge)));
-        let chosen: Vec<([u32; 2], Vec<(usize, usize)>)> = chosen
-            .map(|(edge, sides)| (edge, sides.iter().map(|side| (side.triangle, side.corner)).collect()))
-            .collect();
+        let corners = |sides: &[Side]| sides.iter().map(|side| (side.triangle, side.corner)).collect::<Vec<_>>();
+        let chosen: Vec<_> = chosen.map(|(edge, sides)| (edge, corners(sides))).collect();
         for (edge, sides) in &chosen {
             let [a, b] = edge.map(|v| self.mesh.positions[v as usize]);
             self.mesh.positions.push(0.5 * (a + b));

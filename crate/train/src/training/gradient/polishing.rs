@@ -1,8 +1,9 @@
-//! The polish, all its steps at once: `x_(k+1) = x_k + w S p(x_k) + μ_k (x_k - x_(k-1))`, μ_0 = 0, where `S = a 1 + (1
-//! - a) mean_j` shares with the neighbours, `p = mean_j h(x_j - x_i)`, and `h(d) = d (½ - l̄² / (d² + l̄²))` has the
-//! derivative `H = (½ - l̄² q) 1 + 2 l̄² q² d dᵀ`, `q = 1 / (d² + l̄²)`. Backwards, with λ_k the gradient towards x_k:
-//! `λ_k = (1 + μ_k) λ_(k+1) - μ_(k+1) λ_(k+2) + w Jᵀ Sᵀ λ_(k+1)`, `(Jᵀ λ)_i = Σ_j H_ij (λ_j / degree_j - λ_i /
-//! degree_i)`.
+//! The polish, all its steps at once: `x_(k+1) = x_k + w S p(x_k) + μ_k (x_k - x_(k-1))`, μ_0 = 0, where
+//! `S = a 1 + (1 - a) mean_j` shares with the neighbours, `p = mean_j h(x_j - x_i)`, and
+//! `h(d) = d (½ - l̄² / (d² + l̄²))` has the derivative `H = (½ - l̄² q) 1 + 2 l̄² q² d dᵀ`, `q = 1 / (d² + l̄²)`.
+//!
+//! Backwards, with λ_k the gradient towards x_k: `λ_k = (1 + μ_k) λ_(k+1) - μ_(k+1) λ_(k+2) + w Jᵀ Sᵀ λ_(k+1)`,
+//! where `(Jᵀ λ)_i = Σ_j H_ij (λ_j / degree_j - λ_i / degree_i)`.
 
 use super::super::tape::{Id, IndexId, Shared, Step, Tape};
 use ctsn_core::cpu::Cpu;
