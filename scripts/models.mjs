@@ -22,9 +22,11 @@ async function train(name, minutes) {
   // Their own motion keeps our characters' limbs out of one another: no pose needs pinched cloth.
   const how = ['--own-motion', '--pinched', 0, '--time-budget', `${minutes}m`];
   await ctsn('bake', character, garment, ...how, '-o', model);
-  await ctsn('evaluate', model, out(`${name}.work`), '--html', out(`${name}.html`));
   await ctsn('pack', model, character, '--report', '-o', page(`${name}.safetensors`));
   await ctsn('pack', character, '-o', page(`${figure}.glb`));
+  const truth = out(`${name}.truth`);
+  await ctsn('simulate', character, garment, '--clip', PAIRS[name].shown, '--from', model, '--pinched', 0, '-o', truth);
+  await ctsn('pack', truth, '-o', page(`${name}.truth.safetensors`));
 }
 
 await main(async () => {

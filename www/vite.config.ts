@@ -7,7 +7,7 @@ import type { Figure } from './src/cast/catalogue.js';
 const here = (file: string) => fileURLToPath(new URL(file, import.meta.url));
 
 /** A figure or a garment as `cast.json` lists it. */
-type Named<T> = Omit<T, 'file' | 'bytes' | 'picture' | 'garments'>;
+type Named<T> = Omit<T, 'file' | 'bytes' | 'picture' | 'truth' | 'garments'>;
 type Listed = Named<Figure> & { garments: Named<Figure['garments'][number]>[] };
 
 /** The cast as a module: of what `cast.json` lists, that of which the files are in `public`. */
@@ -28,7 +28,7 @@ function cast(): Plugin {
       const garments = figure.garments.flatMap((garment) => {
         const pair = `${figure.id}-${garment.id}`;
         const model = find(pair, 'safetensors');
-        return model ? [{ ...garment, ...model, picture: find(pair, 'webp')?.file }] : [];
+        return model ? [{ ...garment, ...model, picture: find(pair, 'webp')?.file, truth: find(pair, 'truth.safetensors')?.file }] : [];
       });
       return body && garments.length > 0 ? [{ ...figure, ...body, picture: find(figure.id, 'webp')?.file, garments }] : [];
     });

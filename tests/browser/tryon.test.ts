@@ -124,6 +124,30 @@ test('the address keeps figure, garment, fabric, pose and view', async () => {
   expect([...first.complaints, ...again.complaints]).toEqual([]);
 });
 
+test('the simulation stands beside the network, at its own moments, and its distance is told', async () => {
+  const { page, complaints } = await site.visit('?figure=sphere&wear=sheet&pose=wander 1:20');
+  const legend = page.locator('#legend-name');
+  const mean = async () => Number(/([\d.]+) mm in the mean/.exec((await legend.textContent()) ?? '')?.[1] ?? NaN);
+  await open(page, 'Compare');
+  await page.getByText('with the simulation').click();
+  await expect.poll(() => page.locator('#split-right').textContent(), patience).toBe('Simulation');
+  // What was simulated is of another clip than that which was shown.
+  expect(await page.locator('#clip').inputValue()).toBe('swing');
+  await open(page, 'Maps');
+  await page.getByText('Error', { exact: true }).click();
+  await expect.poll(mean, patience).toBeGreaterThan(0.1);
+  await page.screenshot({ path: `${out}/simulation.png` });
+  // That of the whole network is some millimetres; skinning's would be eighty.
+  for (const seconds of ['1.04', '4.5', '8']) {
+    await page.locator('#time').fill(seconds);
+    await expect.poll(mean, patience).toBeLessThan(15);
+  }
+  await page.locator('#clip').selectOption('wander 1');
+  await expect.poll(() => legend.textContent(), patience).toBe('No simulation of this motion');
+  expect(await page.locator('#split-right').textContent()).toBe('No simulation of this motion');
+  expect(complaints).toEqual([]);
+});
+
 test('garments that come and go leave the GPU as it was', async () => {
   const { page, complaints } = await site.visit('?pose=idle:1&wear=tshirt.felt.4a6b4f.none');
   const change = (garments: string[]) => ask(page, (demo, garments) => demo.wear(garments), garments);

@@ -3,6 +3,7 @@ import type { Figure, GarmentEntry } from './cast/catalogue.js';
 import { combine } from './cast/catalogue.js';
 import { Rail } from './cast/rail.js';
 import { Rivals } from './compare/rivals.js';
+import { Simulated } from './compare/simulated.js';
 import { Cost } from './cost.js';
 import { element } from './dom.js';
 import { tell } from './failure.js';
@@ -14,7 +15,7 @@ import { Maps } from './maps/maps.js';
 import { Transport } from './motion/transport.js';
 import { Poser } from './pose/poser.js';
 import { readPose, writePose } from './pose/record.js';
-import type { Scene } from './share/address.js';
+import { readView, type Scene } from './share/address.js';
 import type { Stage } from './stage/stage.js';
 
 /** Predictions over which a change of quality is spread. */
@@ -41,6 +42,7 @@ export class TryOn {
   readonly #poser: Poser;
   readonly #maps = new Maps();
   readonly #rivals: Rivals;
+  readonly #simulated = new Simulated();
   #own = false;
   #changed = true;
   /** Until when a change of garments is seen, in milliseconds. */
@@ -112,9 +114,10 @@ export class TryOn {
     const { dressed } = this;
     const { clip, time, duration } = dressed.character;
     this.#changed = false;
+    const moment = this.#simulated.wanted && !this.#own ? this.#simulated.hold(dressed) : undefined;
     this.predict();
-    this.#rivals.update(dressed);
-    this.#maps.update(dressed, this.transport.playing && !this.#own);
+    this.#rivals.update(dressed, moment);
+    this.#maps.update(dressed, this.transport.playing && !this.#own, moment);
     this.stage.follow(dressed.hip, dressed.head);
     const { distance, camera } = this.stage;
     dressed.worn.forEach(({ material }, layer) => material.raise(LAYER * layer, distance, camera.near));
@@ -236,6 +239,7 @@ export class TryOn {
     const { bones, clips } = dressed.character;
     dressed.character.scene.updateMatrixWorld(true);
     this.stage.welcome(dressed.character.scene, [dressed.hip, ...bones.filter(({ name }) => LOW.test(name))]);
+    if (dressed.entry.view) this.stage.look(readView(dressed.entry.view));
     this.#poser.hold(bones, dressed.hip);
     this.transport.offer(clips);
     dressed.onModel = () => this.#tell();
@@ -249,6 +253,7 @@ export class TryOn {
     this.#rail.show(this.#cast, entry, worn.map(({ entry }) => entry));
     this.#fabric.show(worn.map(({ entry }) => ({ entry, look: looks.get(entry)! })));
     this.cost.tell(this.dressed);
+    this.#simulated.offer(this.dressed);
     const names = worn.map(({ entry }) => entry.name.toLowerCase()).join(' and ') || 'nothing of ours';
     element('stage').setAttribute('aria-label', `${entry.name}, wearing ${names}. Drag or press arrow keys to turn; scroll, plus or minus to come closer.`);
     this.onScene();
@@ -274,7 +279,9 @@ export class TryOn {
       this.#poser.shown = (target as HTMLInputElement).checked;
       this.#changed = true;
     });
-    this.#maps.onChange = this.#rivals.onChange = () => (this.#changed = true);
+    this.#simulated.onSeek = ({ clip, seconds }) => this.#show(clip, seconds);
+    this.#maps.onChange = this.#rivals.onChange = this.#simulated.onChange = () => (this.#changed = true);
+    this.#simulated.onWanted = () => attempt(this.#simulated.seek(this.dressed));
     this.cost.onBackend = (choice: BackendChoice) => attempt(this.dressed.compute(choice).then(() => this.#tell()));
   }
 

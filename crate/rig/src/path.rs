@@ -5,14 +5,19 @@ use glam::{DAffine3, DMat3, DVec3};
 
 use crate::{Character, Pose};
 
-/// `N` of a pose: translation by minus the posed hip position, then rotation about +Y by minus the heading `ψ`,
-/// the twist about +Y of the rotation of `A_root`.
+/// `N` of a pose.
 pub fn body_frame(character: &Character, pose: &Pose) -> DAffine3 {
     let root = character.root;
-    let a = (pose[root] * character.joints[root].inverse_bind).matrix3;
+    root_frame(&pose[root], &character.joints[root].inverse_bind)
+}
+
+/// `N` by the hip's world transform alone: translation by minus its position, then rotation about +Y by minus the
+/// heading `ψ`, the twist about +Y of the rotation of `A_root`.
+pub fn root_frame(root: &DAffine3, inverse_bind: &DAffine3) -> DAffine3 {
+    let a = (*root * *inverse_bind).matrix3;
     // Row r, column c of A is `col(c)[r]`.
     let heading = (a.col(2)[0] - a.col(0)[2]).atan2(a.col(0)[0] + a.col(2)[2]);
-    DAffine3::from_mat3(DMat3::from_rotation_y(-heading)) * DAffine3::from_translation(-pose[root].translation)
+    DAffine3::from_mat3(DMat3::from_rotation_y(-heading)) * DAffine3::from_translation(-root.translation)
 }
 
 /// `N·G_j` per joint.

@@ -15,12 +15,16 @@ export interface GarmentEntry {
   file: string;
   bytes: number;
   picture?: string | undefined;
+  /** Frames of it that were simulated, of motion that its model has never seen. */
+  truth?: string | undefined;
 }
 
 /** Somebody to dress. */
 export interface Figure {
   id: string;
   name: string;
+  /** From where it is looked at first, as an address has it. */
+  view?: string;
   file: string;
   bytes: number;
   picture?: string | undefined;

@@ -5,9 +5,17 @@ import { Choice, element } from '../dom.js';
 import type { Dressed } from '../figure/dressed.js';
 import { Hem } from '../fabric/hem.js';
 import type { Stage } from '../stage/stage.js';
+import { SimulatedCloth, type Moment } from './simulated.js';
 
 /** What the cloth is compared with; `none` is no comparison. */
-export type Rival = 'none' | Exclude<Quality, 'full'>;
+export type Rival = 'none' | 'truth' | Exclude<Quality, 'full'>;
+
+const titles: Readonly<Record<Rival, string>> = {
+  none: '',
+  truth: 'Simulation',
+  coarse: 'Skeleton stream',
+  skinned: 'Plain skinning',
+};
 
 /** The same garments by other means, seen on the right of a line that can be moved. */
 export class Rivals extends Group {
@@ -16,6 +24,7 @@ export class Rivals extends Group {
   readonly #line = element<HTMLInputElement>('split');
   readonly #label = element('split-right');
   #cloths: readonly { cloth: Cloth<Material>; of: Cloth<Material>; hem: Hem }[] = [];
+  #simulated: { cloth: SimulatedCloth; hem: Hem } | undefined;
 
   constructor(stage: Stage) {
     super();
@@ -37,8 +46,8 @@ export class Rivals extends Group {
     this.#tell();
   }
 
-  /** Moves the rivals of what is worn to where the bones are. */
-  update({ worn, character }: Dressed): void {
+  /** Moves the rivals of what is worn to where the bones are; `moment`: what was simulated of it. */
+  update({ worn, character }: Dressed, moment: Moment | undefined): void {
     const { rival } = this;
     const wanted = rival === 'none' ? [] : worn.map(({ cloth }) => cloth);
     if (wanted.length !== this.#cloths.length || wanted.some((cloth, i) => this.#cloths[i]!.of !== cloth)) {
@@ -53,13 +62,35 @@ export class Rivals extends Group {
       });
     }
     this.#cloths.forEach(({ cloth, of, hem }, i) => {
-      cloth.quality = rival as Quality;
+      // What nobody simulated is as the network has it.
+      cloth.quality = rival === 'truth' ? 'full' : (rival as Quality);
       cloth.blend = 0;
       cloth.material = of.material;
       hem.thick = worn[i]!.hem.thick;
       cloth.update();
       hem.update();
+      cloth.visible = rival !== 'truth' || moment?.worn.cloth !== of;
     });
+    this.#simulate(rival === 'truth' ? moment : undefined);
+    this.#label.textContent = rival === 'truth' && !moment ? 'No simulation of this motion' : titles[rival];
+  }
+
+  /** Shows what was simulated, if anything was. */
+  #simulate(moment: Moment | undefined): void {
+    if (this.#simulated && !(moment && this.#simulated.cloth.isOf(moment))) {
+      this.#simulated.hem.free();
+      this.#simulated.cloth.dispose();
+      this.#simulated = undefined;
+    }
+    if (!moment) return;
+    const cloth = this.#simulated?.cloth ?? new SimulatedCloth(moment);
+    cloth.material = moment.worn.material;
+    cloth.show(moment);
+    this.#simulated ??= { cloth, hem: new Hem(cloth) };
+    const { hem } = this.#simulated;
+    hem.thick = moment.worn.hem.thick;
+    hem.update();
+    this.add(cloth);
   }
 
   /** Draws the network's cloth on the left of the line, the rival's on the right. */
@@ -83,7 +114,6 @@ export class Rivals extends Group {
     const { rival } = this;
     element('compare-line').hidden = rival === 'none';
     element('compare-line').style.setProperty('--split', String(100 * Number(this.#line.value)));
-    this.#label.textContent = rival === 'coarse' ? 'Skeleton stream' : 'Plain skinning';
     this.onChange();
   }
 

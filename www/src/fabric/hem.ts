@@ -1,5 +1,5 @@
 import { BufferAttribute, BufferGeometry, DynamicDrawUsage, Material, Mesh, Vector3 } from 'three';
-import type { Cloth } from 'ctsn/three';
+import type { ClothModel } from 'ctsn';
 
 /** Metres that a hem reaches inwards. */
 const BROAD = 0.011;
@@ -18,6 +18,9 @@ const PROFILE = [
 ] as const;
 const ROWS = PROFILE.length;
 
+/** Cloth that has hems: of a model's surface, wherever its vertices come from. */
+export type Hemmed = Mesh<BufferGeometry, Material> & { readonly model: ClothModel };
+
 /** One end of an edge at the rim: drawn vertices of it, and which way the cloth lies from there. */
 interface End {
   vertex: number;
@@ -35,14 +38,14 @@ interface End {
 export class Hem extends Mesh<BufferGeometry, Material> {
   /** How thick it is, metres. */
   thick = 0.003;
-  readonly #cloth: Cloth<Material>;
+  readonly #cloth: Hemmed;
   readonly #ends: readonly End[];
   readonly #at = new Vector3();
   readonly #out = new Vector3();
   readonly #in = new Vector3();
   readonly #other = new Vector3();
 
-  constructor(cloth: Cloth<Material>) {
+  constructor(cloth: Hemmed) {
     const ends = findRim(cloth);
     super(createGeometry(ends), cloth.material);
     this.#cloth = cloth;
@@ -83,7 +86,7 @@ export class Hem extends Mesh<BufferGeometry, Material> {
 }
 
 /** The two ends of every edge that only one triangle has, one edge after the other. */
-function findRim({ model, geometry }: Cloth<Material>): End[] {
+function findRim({ model, geometry }: Hemmed): End[] {
   const index = geometry.index!.array;
   const clothOf = (drawn: number) => model.surface?.vertex[drawn] ?? drawn;
   const key = (a: number, b: number) => clothOf(a) * model.vertexCount + clothOf(b);

@@ -78,6 +78,15 @@ export class Character {
     this.#mixer.update(0);
   }
 
+  /** Poses the character as at another time of its clip; its clock stays where it is. */
+  glance(time: number): void {
+    const action = this.#action;
+    if (!action) return;
+    const { time: now } = action;
+    this.show(this.clip, time);
+    action.time = now;
+  }
+
   /** Moves on by some seconds; clips repeat. */
   advance(seconds: number): void {
     this.#mixer.update(seconds);

@@ -1,5 +1,6 @@
 import type { Cloth } from 'ctsn/three';
-import { BufferAttribute, DoubleSide, MeshStandardMaterial, type Material } from 'three';
+import { BufferAttribute, DoubleSide, MeshStandardMaterial, Vector3, type Material } from 'three';
+import { SimulatedCloth, type Moment } from '../compare/simulated.js';
 import { Choice, element } from '../dom.js';
 import type { Dressed } from '../figure/dressed.js';
 import { bindPose } from '../fabric/material.js';
@@ -7,15 +8,18 @@ import { Skin } from './fit.js';
 import { colourOf, gradient } from './ramp.js';
 
 /** What the colours of the cloth say. */
-export type MapName = 'none' | 'fit' | 'stretch' | 'confidence';
+export type MapName = 'none' | 'fit' | 'stretch' | 'error' | 'confidence';
 
 /** Distance from the skin at the end of the scale, metres; and stretch, as a share. */
 const LOOSE = 0.08;
 const STRETCHED = 0.2;
+/** Distance from what was simulated, there, metres. */
+const WRONG = 0.03;
 
 const legends: Readonly<Record<Exclude<MapName, 'none'>, readonly [string, string, string]>> = {
   fit: ['Distance from the skin', '0 mm', '80 mm and more'],
   stretch: ['Length beside that at rest', '20 % shorter', '20 % longer'],
+  error: ['Distance from the simulation', '0 mm', '30 mm and more'],
   confidence: ['How well this pose is known', '0 %', '100 %'],
 };
 
@@ -46,8 +50,8 @@ export class Maps {
     this.#tell();
   }
 
-  /** Paints what is worn, or gives it its fabric back. */
-  update(dressed: Dressed, playing: boolean): void {
+  /** Paints what is worn, or gives it its fabric back; `moment`: what was simulated of it. */
+  update(dressed: Dressed, playing: boolean, moment: Moment | undefined): void {
     const { map } = this;
     const now = performance.now();
     const due = !playing || map !== 'fit' || now - this.#painted > REST;
@@ -57,11 +61,11 @@ export class Maps {
       if (cloth.material !== this.#material && cloth.material !== material) continue;
       cloth.material = map === 'none' ? material : this.#material;
       hem.visible = map === 'none';
-      if (map !== 'none' && (due || !cloth.geometry.hasAttribute('color'))) this.#paint(map, dressed, cloth);
+      if (map !== 'none' && (due || !cloth.geometry.hasAttribute('color'))) this.#paint(map, dressed, cloth, moment);
     }
   }
 
-  #paint(map: Exclude<MapName, 'none'>, dressed: Dressed, cloth: Cloth<Material>): void {
+  #paint(map: Exclude<MapName, 'none'>, dressed: Dressed, cloth: Cloth<Material>, moment: Moment | undefined): void {
     const { geometry } = cloth;
     const position = geometry.getAttribute('position') as BufferAttribute;
     let colour = geometry.getAttribute('color') as BufferAttribute | undefined;
@@ -73,6 +77,12 @@ export class Maps {
     } else if (map === 'stretch') {
       this.#edgesOf(cloth).measure(position.array, values);
       values.forEach((ratio, i) => (values[i] = 0.5 + (ratio - 1) / (2 * STRETCHED)));
+    } else if (map === 'error') {
+      const known = moment?.worn.cloth === cloth;
+      const mean = known ? measureError(cloth, moment, values) : 0;
+      if (known || !moment) {
+        element('legend-name').textContent = known ? `From the simulation: ${(1e3 * mean).toFixed(1)} mm in the mean` : 'No simulation of this motion';
+      }
     } else {
       values.fill(cloth.confidence);
     }
@@ -104,6 +114,21 @@ export class Maps {
     this.#painted = 0;
     this.onChange();
   }
+}
+
+/** Distances of the drawn vertices from where they were simulated, as shares of `WRONG`; answers their mean, metres. */
+function measureError(cloth: Cloth<Material>, moment: Moment, to: Float32Array): number {
+  const simulated = new SimulatedCloth(moment);
+  simulated.show(moment);
+  const [at, there] = [new Vector3(), new Vector3()];
+  const [ours, theirs] = [cloth, simulated].map(({ geometry }) => geometry.getAttribute('position') as BufferAttribute);
+  for (let drawn = 0; drawn < to.length; drawn++) {
+    at.fromBufferAttribute(ours!, drawn).applyMatrix4(cloth.matrixWorld);
+    there.fromBufferAttribute(theirs!, drawn).applyMatrix4(simulated.matrixWorld);
+    to[drawn] = at.distanceTo(there) / WRONG;
+  }
+  simulated.dispose();
+  return (WRONG * to.reduce((sum, value) => sum + value, 0)) / to.length;
 }
 
 const size = ({ geometry }: { geometry: { getAttribute(name: string): { count: number } } }) => geometry.getAttribute('position').count;

@@ -21,12 +21,15 @@ export function readAddress({ searchParams }: URL): Scene {
   if (figure) scene.figure = figure;
   if (wear !== null && wear !== undefined) scene.wear = wear.split(',').filter(Boolean).map(readGarment);
   if (pose) scene.pose = readPlace(pose);
-  if (view) {
-    const [around, up, far, lift = 0] = view.split(',').map(Number);
-    if (![around, up, far, lift].every(Number.isFinite)) throw new Error(`?view=${view}: AROUND,UP,FAR wanted, for example ?view=30,5,2.5`);
-    scene.view = { around: around!, up: up!, far: far!, lift };
-  }
+  if (view) scene.view = readView(view);
   return scene;
+}
+
+/** A view from its text, AROUND,UP,FAR and maybe LIFT. */
+export function readView(text: string): View {
+  const [around, up, far, lift = 0] = text.split(',').map(Number);
+  if (![around, up, far, lift].every(Number.isFinite)) throw new Error(`?view=${text}: AROUND,UP,FAR wanted, for example ?view=30,5,2.5`);
+  return { around: around!, up: up!, far: far!, lift };
 }
 
 /** The query of an address that shows the same. */

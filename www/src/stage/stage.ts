@@ -85,8 +85,8 @@ export class Stage {
     const { view } = this;
     const box = new Box3().setFromObject(figure, true);
     const size = box.getSize(new Vector3());
-    // What is longer than it is high, as animals are, is seen from as far as if it were as high.
-    this.#height = Math.max(size.y, 0.7 * size.z, 0.3);
+    // What is longer or broader than it is high, an animal or a rail, is seen from as far as if it were as high.
+    this.#height = Math.max(size.y, 0.7 * size.z, 0.9 * size.x, 0.3);
     this.#middle = 0.5 * (box.min.y + box.max.y);
     const reach = 0.95 * this.#height;
     Object.assign(this.#sun.shadow.camera, { left: -reach, right: reach, top: reach, bottom: -reach, near: 0.1, far: 9 });

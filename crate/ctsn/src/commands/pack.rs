@@ -6,6 +6,7 @@ use anyhow::{Context, Result};
 use ctsn_core::file::Tensors;
 use ctsn_core::model::{HostModel, file_bytes};
 use ctsn_rig::{file, gltf};
+use ctsn_train::dataset::Dataset;
 use std::path::PathBuf;
 
 /// Poses that each tensor is tried in, and those, others, that the whole is judged by.
@@ -22,9 +23,12 @@ const RATE: f64 = 5.0;
 ///
 /// A character (`ctsn pack character.glb -o small.glb`) is coded by meshoptimizer: three.js reads it once GLTFLoader
 /// has its MeshoptDecoder.
+///
+/// The frames of a dataset (`ctsn pack data/andy-tshirt -o truth.safetensors`) become one file in steps of 0.1 mm, for a
+/// page to show what was simulated beside what is predicted.
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// Model file (safetensors), or a character (GLB)
+    /// Model file (safetensors), a character (GLB), or the folder of a dataset
     file: PathBuf,
     /// The character that a model was trained on (glTF): its clips are the poses that are compared
     character: Option<PathBuf>,
@@ -37,6 +41,9 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> Result<()> {
+    if arguments.file.is_dir() {
+        return frames(arguments);
+    }
     let before = file::read(&arguments.file)?;
     if before.starts_with(b"glTF") {
         return character(arguments, before.len());
@@ -75,6 +82,15 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         1e3 * BOUND.0,
         BOUND.1
     );
+    Ok(())
+}
+
+/// Packs the frames of a dataset.
+fn frames(Arguments { file: path, output, .. }: &Arguments) -> Result<()> {
+    let data = Dataset::read(path)?;
+    let packed = file::gzip(&packing::truth(&data)?.to_bytes());
+    file::write(output, &packed)?;
+    println!("{}: {} frames, {} bytes", file_name(output), data.samples.len(), packed.len());
     Ok(())
 }
 

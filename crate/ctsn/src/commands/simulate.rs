@@ -10,7 +10,7 @@ use ctsn_train::dataset::Dataset;
 use ctsn_train::ground_truth::{self, Kind, Request, Run, Shard};
 use ctsn_train::report::Report;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// Simulate a garment on every frame of a character's clips
 ///
@@ -194,10 +194,19 @@ pub fn add_body(character: &mut Character, path: &Path) -> Result<()> {
 
 /// Simulates with a progress bar; in a log file, with a line now and then.
 fn follow(work: &Run, character: &Character, until: Option<Instant>) -> Result<()> {
-    let bar = bar(work.left(), "simulate");
-    let every = (work.left() as u64 / 20).max(1);
+    let (bar, all) = (bar(work.left(), "simulate"), work.left() as u64);
+    let every = if until.is_some() { 10 } else { (all / 20).max(1) };
+    // Of many poses only so many are simulated as the time allows.
+    let expected = |done: u64, taken: Duration| match until {
+        Some(until) => {
+            let whole = taken + until.saturating_duration_since(Instant::now());
+            all.min((done as f64 * whole.as_secs_f64() / taken.as_secs_f64()).ceil() as u64)
+        }
+        None => all,
+    };
     work.simulate(until, |record, kind| {
         bar.inc(1);
+        bar.set_length(expected(bar.position(), bar.elapsed()));
         if let Some(reason) = &record.rejected {
             let frame = record.frame;
             let pose = match kind {
@@ -209,8 +218,9 @@ fn follow(work: &Run, character: &Character, until: Option<Instant>) -> Result<(
             bar.suspend(|| eprintln!("  left out: {pose}: {reason}"));
         }
         if bar.is_hidden() && bar.position().is_multiple_of(every) {
-            let left = remaining(bar.elapsed(), bar.position(), work.left() as u64);
-            eprintln!("  {} of {} poses, {left} left", bar.position(), work.left());
+            let (done, all) = (bar.position(), bar.length().unwrap_or(all));
+            let (about, left) = (if until.is_some() { "about " } else { "" }, remaining(bar.elapsed(), done, all));
+            eprintln!("  {done} of {about}{all} poses, {left} left");
         }
     })?;
     bar.finish_and_clear();

@@ -1,12 +1,14 @@
 //! A model's file made small. Every tensor is kept as coarsely as the cloth bears: tried one by one over poses.
 
 mod trial;
+mod truth;
 
 use anyhow::Result;
 use ctsn_core::file::{Tensor, Tensors};
 use ctsn_core::model::pack::{MOST_LEVELS, narrow, packable, quantise};
 use ctsn_core::model::{MESH_BASIS, SKELETON_BASIS};
 pub use trial::{Difference, Trial};
+pub use truth::truth;
 
 /// What packing may change: mean distance of a vertex in metres, mean angle of a normal in degrees.
 pub const BOUND: (f64, f64) = (1e-4, 0.1);
