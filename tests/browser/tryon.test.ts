@@ -129,12 +129,12 @@ test('the simulation stands beside the network, at its own moments, and its dist
   const legend = page.locator('#legend-name');
   const mean = async () => Number(/([\d.]+) mm in the mean/.exec((await legend.textContent()) ?? '')?.[1] ?? NaN);
   await open(page, 'Compare');
-  await page.getByText('with the simulation').click();
+  await page.getByLabel('with the simulation').check();
   await expect.poll(() => page.locator('#split-right').textContent(), patience).toBe('Simulation');
   // What was simulated is of another clip than that which was shown.
   expect(await page.locator('#clip').inputValue()).toBe('swing');
   await open(page, 'Maps');
-  await page.getByText('Error', { exact: true }).click();
+  await page.getByLabel('Error').check();
   await expect.poll(mean, patience).toBeGreaterThan(0.1);
   await page.screenshot({ path: `${out}/simulation.png` });
   // That of the whole network is some millimetres; skinning's would be eighty.

@@ -78,7 +78,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let mixable = options.mixed == 0 && has_limbs(&character);
     let mixed = if mixable { frames / 2 } else { options.mixed };
 
-    let steps = Steps { character: &character, arguments, garment: &garment, budget };
+    let steps = Steps { character: &character, arguments, garment: &garment, budget, begun: Instant::now() };
     let first = work.join("first.safetensors");
     let shown = steps.check()?;
     if !first.exists() {
@@ -86,7 +86,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         let along = simulate::Options { poses: Some(few), mixed: 0, noise_floor: 0, ..options.clone() };
         steps.estimate(&along, &work.join("first"), frames + mixed)?;
         println!("step 1 of 5: poses along their paths");
-        steps.simulate(&along, &work.join("first"), SHARES[0])?;
+        steps.simulate(&along, &work.join("first"), 0)?;
         println!("step 2 of 5: a first model");
         steps.train(&work.join("first"), &first, SHARES[1])?;
     }
@@ -96,7 +96,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     }
     let many = simulate::Options { poses: Some(frames), mixed, from: Some(first), ..options.clone() };
     println!("step 3 of 5: poses from what it predicts");
-    steps.simulate(&many, &work, SHARES[2])?;
+    steps.simulate(&many, &work, 2)?;
     println!("step 4 of 5: the model");
     steps.train(&work, output, SHARES[3])?;
     println!("step 5 of 5: its errors");
@@ -122,6 +122,7 @@ struct Steps<'a> {
     arguments: &'a Arguments,
     garment: &'a Path,
     budget: Option<Duration>,
+    begun: Instant,
 }
 
 impl Steps<'_> {
@@ -178,9 +179,10 @@ impl Steps<'_> {
         Ok(())
     }
 
-    /// Simulates into a dataset for this share of the time; longer where a training wants more poses. A dataset that
-    /// was finished in time is kept: with more poses it would be another, and all that follows had to be done again.
-    fn simulate(&self, options: &simulate::Options, dataset: &Path, share: f64) -> Result<()> {
+    /// Simulates into a dataset for the share of the time that is this step's, less what the steps before took too
+    /// long; longer where a training wants more poses. A dataset that was finished in time is kept: with more poses it
+    /// would be another, and all that follows had to be done again.
+    fn simulate(&self, options: &simulate::Options, dataset: &Path, step: usize) -> Result<()> {
         let Some(budget) = self.budget else {
             return simulate::along(self.character, &self.simulation(options, dataset), None);
         };
@@ -188,7 +190,8 @@ impl Steps<'_> {
             println!("{}: has been simulated already", dataset.display());
             return Ok(());
         }
-        let until = Instant::now() + budget.mul_f64(share);
+        let until = Instant::now() + budget.mul_f64(SHARES[step]);
+        let until = until.min(self.begun + budget.mul_f64(SHARES[..=step].iter().sum()));
         let all = options.poses.unwrap_or(usize::MAX);
         let mut poses = FEWEST.min(all);
         loop {
