@@ -2,6 +2,7 @@
 // npm run bench -- --stages: every operation natively, beside the machine's limits.
 // npm run bench -- --dial: what a mesh stream in every k-th frame costs in accuracy.
 // npm run bench -- --block: how long a page is held up by loads and predictions, with and without a worker.
+// npm run bench -- --visit: what a visitor of the demo page waits for on a slow line; 200 changes of clothes.
 // npm run bench -- --peers: beside other runtimes, into docs/results.md.
 import { copyFileSync, mkdirSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
@@ -12,6 +13,8 @@ import { buildLibrary } from './library.mjs';
 import { inPage, withServer } from './page.mjs';
 import { comparePeers, PAPER, withoutBody } from './peers.mjs';
 import { at, main, need, say } from './step.mjs';
+import { build } from './tryon.mjs';
+import { measureVisits } from './visit.mjs';
 
 const RUNS = 7;
 const PREDICTIONS = 30;
@@ -92,6 +95,7 @@ await main(async () => {
   await buildLibrary();
   if (process.argv.includes('--dial')) return measureDial();
   if (process.argv.includes('--block')) return measureBlocks();
+  if (process.argv.includes('--visit')) return build().then(measureVisits);
   if (process.argv.includes('--peers')) return comparePeers(ctsn);
   say('native, one thread');
   await need(ctsn, ['bench']);

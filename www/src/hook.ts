@@ -46,6 +46,10 @@ export interface Demo {
   choose(figure: string): Promise<void>;
   /** A picture of so many pixels without a background, webp as a data address. */
   picture(width: number, height: number): Promise<string>;
+  /** Whether the figure stands there without any garment. */
+  bare: boolean;
+  /** Settles when the models of what is worn have their folds. */
+  complete(): Promise<unknown>;
   /** Geometries and textures that the renderer keeps on the GPU. */
   memory(): { geometries: number; textures: number };
   /** Where the cloth is predicted, and why not on the GPU. */

@@ -96,7 +96,7 @@ async function start(): Promise<void> {
 /** The page's handle. */
 function offer(page: TryOn, arrange: () => void): void {
   const captured = async () => {
-    await Promise.all(page.dressed.models.map(({ complete }) => complete));
+    await hook.complete!();
     // What was changed a moment ago waits for the next animation frame to be drawn.
     page.predict();
     await page.dressed.wardrobe.settled();
@@ -107,6 +107,7 @@ function offer(page: TryOn, arrange: () => void): void {
     milliseconds: { get: () => page.cost.milliseconds },
     backend: { get: () => page.dressed.models[0]?.backend },
     fallback: { get: () => page.dressed.models[0]?.fallback },
+    bare: { get: () => !page.dressed.wardrobe.children.some(({ visible }) => visible) },
     clips: {
       get: () => {
         const { character } = page.dressed;
@@ -142,6 +143,7 @@ function offer(page: TryOn, arrange: () => void): void {
         reader.readAsDataURL(blob);
       });
     },
+    complete: () => Promise.all(page.dressed.models.map(({ complete }) => complete)),
     memory() {
       const { geometries, textures } = page.stage.renderer.info.memory;
       return { geometries, textures };

@@ -1,0 +1,111 @@
+// What a visitor of the demo page waits for, and what changing clothes leaves behind, in Chromium: the built site, served
+// with brotli, over a line as slow as a phone's.
+import { brotliCompressSync } from 'node:zlib';
+import { existsSync, readFileSync } from 'node:fs';
+import { createServer } from 'node:http';
+import { once } from 'node:events';
+import path from 'node:path';
+import { chromium, environment, flags } from './browser.mjs';
+import { at } from './step.mjs';
+
+const VISITS = 5;
+const CHANGES = 200;
+/** 10 Mbit a second, 40 ms to and fro. */
+const LINE = { offline: false, latency: 40, downloadThroughput: 1.25e6, uploadThroughput: 1.25e6 };
+
+const types = { '.js': 'text/javascript', '.css': 'text/css', '.html': 'text/html', '.wasm': 'application/wasm', '.webp': 'image/webp' };
+
+/** The site as a server that compresses would send it, isolated so that memory can be measured. */
+async function serveSite() {
+  const root = at('www', 'dist');
+  const packed = new Map();
+  const server = createServer((request, response) => {
+    const { pathname } = new URL(request.url, 'http://localhost');
+    const file = path.join(root, pathname === '/' ? 'index.html' : decodeURIComponent(pathname));
+    if (!file.startsWith(root) || !existsSync(file)) return response.writeHead(404).end();
+    const text = ['.js', '.css', '.html', '.wasm'].includes(path.extname(file));
+    if (!packed.has(file)) packed.set(file, text ? brotliCompressSync(readFileSync(file)) : readFileSync(file));
+    response.writeHead(200, {
+      'Content-Type': types[path.extname(file)] ?? 'application/octet-stream',
+      'Content-Length': packed.get(file).length,
+      ...(text ? { 'Content-Encoding': 'br' } : {}),
+      'Cross-Origin-Opener-Policy': 'same-origin',
+      'Cross-Origin-Embedder-Policy': 'require-corp',
+    });
+    response.end(packed.get(file));
+  });
+  server.listen(0, 'localhost');
+  await once(server, 'listening');
+  return { origin: `http://localhost:${server.address().port}/`, close: () => (server.closeAllConnections(), server.close()) };
+}
+
+/** One visit with an empty cache: milliseconds and bytes until cloth is there, and until its folds are. */
+async function visit(browser, origin) {
+  const context = await browser.newContext({ viewport: { width: 960, height: 600 } });
+  const page = await context.newPage();
+  const session = await context.newCDPSession(page);
+  await session.send('Network.enable');
+  await session.send('Network.emulateNetworkConditions', LINE);
+  let bytes = 0;
+  session.on('Network.dataReceived', ({ encodedDataLength }) => (bytes += encodedDataLength));
+  const start = performance.now();
+  const passed = () => ({ milliseconds: performance.now() - start, bytes });
+  await page.goto(origin, { waitUntil: 'commit' });
+  await page.waitForFunction(() => window.ctsnDemo?.ready, undefined, { polling: 20, timeout: 120_000 });
+  const cloth = passed();
+  await page.evaluate(() => window.ctsnDemo.complete());
+  const folds = passed();
+  await context.close();
+  return { cloth, folds };
+}
+
+/** Garments put on one after the other: memory before and after, and the longest task of the page's own thread. */
+async function change(browser, origin) {
+  const page = await browser.newPage({ viewport: { width: 480, height: 600 }, reducedMotion: 'reduce' });
+  page.setDefaultTimeout(120_000);
+  await page.goto(origin);
+  await page.waitForFunction(() => window.ctsnDemo?.ready);
+  const measured = await page.evaluate(async (changes) => {
+    const demo = window.ctsnDemo;
+    const [[, garments]] = Object.entries(demo.cast);
+    const memory = async () => ({ bytes: (await performance.measureUserAgentSpecificMemory()).bytes, ...demo.memory() });
+    for (let i = 0; i < 2 * garments.length; i++) await demo.wear([garments[i % garments.length]]);
+    const tasks = [];
+    new PerformanceObserver((list) => tasks.push(...list.getEntries().map(({ duration }) => duration))).observe({ type: 'longtask' });
+    const before = await memory();
+    let [frames, bare, over] = [0, 0, false];
+    const look = () => {
+      frames++;
+      bare += demo.bare ? 1 : 0;
+      if (!over) requestAnimationFrame(look);
+    };
+    look();
+    for (let i = 0; i < changes; i++) await demo.wear([garments[i % garments.length]]);
+    over = true;
+    return { before, after: await memory(), longest: Math.max(0, ...tasks), tasks: tasks.length, frames, bare, garments };
+  }, CHANGES);
+  await page.close();
+  return measured;
+}
+
+export async function measureVisits() {
+  const { chromium: playwright } = await import('playwright-core');
+  const browser = await playwright.launch({ executablePath: chromium(), args: flags(), env: environment() });
+  const { origin, close } = await serveSite();
+  const median = (values) => values.sort((a, b) => a - b)[values.length >> 1];
+  try {
+    const visits = [];
+    for (let i = 0; i < VISITS; i++) visits.push(await visit(browser, origin));
+    for (const [what, title] of [['cloth', 'first cloth'], ['folds', 'with its folds']]) {
+      const [ms, bytes] = ['milliseconds', 'bytes'].map((key) => median(visits.map((one) => one[what][key])));
+      console.log(`${title}: ${(ms / 1e3).toFixed(2)} s, ${(bytes / 1e6).toFixed(2)} MB (median of ${VISITS} visits, 10 Mbit/s, 40 ms)`);
+    }
+    const { before, after, longest, tasks, frames, bare, garments } = await change(browser, origin);
+    const tell = ({ bytes, geometries, textures }) => `${(bytes / 1e6).toFixed(1)} MB, ${geometries} geometries, ${textures} textures`;
+    console.log(`${CHANGES} changes between ${garments.join(', ')}: before ${tell(before)}; after ${tell(after)}`);
+    console.log(`tasks above 50 ms: ${tasks}, the longest ${longest.toFixed(0)} ms; frames without cloth: ${bare} of ${frames}`);
+  } finally {
+    await browser.close();
+    close();
+  }
+}
