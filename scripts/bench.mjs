@@ -3,6 +3,7 @@
 // npm run bench -- --dial: what a mesh stream in every k-th frame costs in accuracy.
 // npm run bench -- --block: how long a page is held up by loads and predictions, with and without a worker.
 // npm run bench -- --visit: what a visitor of the demo page waits for on a slow line; 200 changes of clothes.
+// npm run bench -- --cast: every model of the demo page.
 // npm run bench -- --peers: beside other runtimes, into docs/results.md.
 import { copyFileSync, mkdirSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
@@ -10,6 +11,7 @@ import { measureBlocks } from './block.mjs';
 import { chromium } from './browser.mjs';
 import { demo, measureDial } from './dial.mjs';
 import { buildLibrary } from './library.mjs';
+import { measureModels } from './cast.mjs';
 import { inPage, withServer } from './page.mjs';
 import { comparePeers, PAPER, withoutBody } from './peers.mjs';
 import { at, main, need, say } from './step.mjs';
@@ -95,6 +97,7 @@ await main(async () => {
   await buildLibrary();
   if (process.argv.includes('--dial')) return measureDial();
   if (process.argv.includes('--block')) return measureBlocks();
+  if (process.argv.includes('--cast')) return measureModels();
   if (process.argv.includes('--visit')) return build().then(measureVisits);
   if (process.argv.includes('--peers')) return comparePeers(ctsn);
   say('native, one thread');

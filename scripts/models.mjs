@@ -25,7 +25,7 @@ async function train(name, minutes) {
   await ctsn('pack', model, character, '--report', '-o', page(`${name}.safetensors`));
   await ctsn('pack', character, '-o', page(`${figure}.glb`));
   const truth = out(`${name}.truth`);
-  await ctsn('simulate', character, garment, '--clip', PAIRS[name].shown, '--from', model, '--pinched', 0, '-o', truth);
+  await ctsn('simulate', character, garment, '--rate', 6, '--clip', PAIRS[name].shown, '--from', model, '--pinched', 0, '-o', truth);
   await ctsn('pack', truth, '-o', page(`${name}.truth.safetensors`));
 }
 
