@@ -1,7 +1,7 @@
 // The same with three.js.
 import { DoubleSide, MeshStandardMaterial, type Object3D, type PerspectiveCamera } from 'three';
 import { loadModel } from 'ctsn';
-import { Cloth, ClothLoader, ClothScheduler } from 'ctsn/three';
+import { Cloth, ClothLoader, ClothScheduler, coveredSkin, Wardrobe } from 'ctsn/three';
 
 export async function dress(character: Object3D): Promise<Cloth> {
   const material = new MeshStandardMaterial({ side: DoubleSide });
@@ -10,6 +10,17 @@ export async function dress(character: Object3D): Promise<Cloth> {
   cloth.material.color.set('steelblue');
   cloth.update();
   return cloth;
+}
+
+export async function change(character: Object3D): Promise<readonly ('shirt' | 'dress')[]> {
+  const materials = { shirt: new MeshStandardMaterial(), dress: new MeshStandardMaterial() };
+  const garments = { shirt: 'shirt.safetensors', dress: new URL('https://example.org/dress.safetensors') };
+  const wardrobe = new Wardrobe(character, garments, { material: (garment) => materials[garment], covered: coveredSkin });
+  await wardrobe.wear('shirt');
+  // @ts-expect-error: there is no such garment.
+  await wardrobe.wear('shrit').catch(() => undefined);
+  await wardrobe.stock('hat', 'hat.safetensors').wear(['shirt', 'hat']);
+  return wardrobe.worn;
 }
 
 export async function share(cloths: Cloth[], camera: PerspectiveCamera): Promise<number> {

@@ -1,4 +1,4 @@
-import { download, type DownloadOptions, type Progress } from './download.js';
+import { download, type PartsOptions, type Progress } from './download.js';
 
 /** By address: files on their way, and files fetched ahead that nobody has taken yet. */
 const arrivals = new Map<string, Arrival>();
@@ -7,7 +7,7 @@ const arrivals = new Map<string, Arrival>();
 class Arrival {
   readonly #address: string;
   readonly #bytes: Promise<Uint8Array>;
-  readonly #listeners = new Set<Pick<DownloadOptions, 'onProgress' | 'onPart'>>();
+  readonly #listeners = new Set<Pick<PartsOptions, 'onProgress' | 'onPart'>>();
   /** What has come, for those who ask late. */
   #parts: Uint8Array[] = [];
   readonly #request = new AbortController();
@@ -35,7 +35,7 @@ class Arrival {
   }
 
   /** The file [bytes]; `keep` it for the next who wants it. When the last who waits gives up, so does the request. */
-  async wait(keep: boolean, { onProgress, onPart, signal }: DownloadOptions): Promise<Uint8Array> {
+  async wait(keep: boolean, { onProgress, onPart, signal }: PartsOptions): Promise<Uint8Array> {
     this.#waiting++;
     // An object of its own: one function may listen for several loads.
     const listener = { onProgress, onPart };
@@ -63,7 +63,7 @@ class Arrival {
  * Fetches a file [bytes]. Those who want the same one at the same time share one request, unless they say how to ask
  * for it; what was fetched ahead is taken.
  */
-export async function fetchFile(source: string | URL, options: DownloadOptions): Promise<Uint8Array> {
+export async function fetchFile(source: string | URL, options: PartsOptions): Promise<Uint8Array> {
   const { signal, request } = options;
   signal?.throwIfAborted();
   if (!request) return Arrival.of(String(source), options.cache).wait(false, options);
@@ -71,7 +71,7 @@ export async function fetchFile(source: string | URL, options: DownloadOptions):
 }
 
 /** Fetches a file ahead. It is kept until somebody wants it. */
-export async function fetchAhead(source: string | URL, options: DownloadOptions): Promise<void> {
+export async function fetchAhead(source: string | URL, options: PartsOptions): Promise<void> {
   options.signal?.throwIfAborted();
   await Arrival.of(String(source), options.cache).wait(true, options);
 }

@@ -22,14 +22,17 @@ export interface DownloadOptions {
   cache?: string | undefined;
   /** Ends it; the call is refused with the signal's reason. */
   signal?: AbortSignal | undefined;
-  /** @internal Takes every piece that comes. */
+}
+
+/** The same with an ear for every piece that comes. */
+export interface PartsOptions extends DownloadOptions {
   onPart?: ((part: Uint8Array) => void) | undefined;
 }
 
 /** Fetches a file to its end, reporting true byte sizes; `file:` addresses work in Node. */
 export async function download(
   address: string | URL,
-  { onProgress, onPart, request, cache }: DownloadOptions = {},
+  { onProgress, onPart, request, cache }: PartsOptions = {},
 ): Promise<Uint8Array> {
   const local = readLocal(address);
   if (local) {
@@ -70,7 +73,7 @@ async function keep(store: Cache, response: Response, address: string | URL): Pr
 
 async function collect(
   response: Response,
-  { onProgress, onPart }: Pick<DownloadOptions, 'onProgress' | 'onPart'>,
+  { onProgress, onPart }: Pick<PartsOptions, 'onProgress' | 'onPart'>,
   refuse: (cause: unknown) => never,
 ): Promise<Uint8Array> {
   const announced = Number(response.headers.get('content-length'));

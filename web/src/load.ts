@@ -161,6 +161,21 @@ function checkSteps(polish: number | undefined): void {
 /** A model file: its address, or its bytes. */
 export type ModelSource = string | URL | ArrayBuffer | Uint8Array;
 
+/** What else may be found at an address, by how it begins. */
+const strangers = [
+  ['<', 'a web page', 'is the address right? Servers for development answer so where there is no file'],
+  ['glTF', 'a glTF file', 'a model is what `ctsn bake` makes of it'],
+] as const;
+
+/** Refuses what is plainly no model, with its address. */
+function recognise(file: Uint8Array, address: string): Uint8Array {
+  const start = String.fromCharCode(...file.subarray(0, 4));
+  const found = strangers.find(([beginning]) => start.startsWith(beginning));
+  if (!found) return file;
+  const [, what, advice] = found;
+  throw new CtsnError('not_safetensors', `${address}: wanted a model file (safetensors), found ${what} that begins with ${JSON.stringify(start)}: ${advice}`);
+}
+
 /** A model file [bytes] on its way, and what comes of it first: see `ModelFile`. */
 interface Coming {
   file: Promise<Uint8Array>;
@@ -177,6 +192,7 @@ function reader(source: ModelSource): (options: DownloadOptions, progressive: bo
     throw new CtsnError('argument', `a model is an address, an ArrayBuffer or a Uint8Array, not ${typeof source}`);
   }
   const bytes = address ? undefined : new Uint8Array(source instanceof ArrayBuffer ? source.slice() : source);
+  const named = (found: Uint8Array) => (address ? recognise(found, String(source)) : found);
   return (options, progressive) => {
     let tell!: (file: Uint8Array) => void;
     const coarse = new Promise<Uint8Array>((resolve) => (tell = resolve));
@@ -184,7 +200,7 @@ function reader(source: ModelSource): (options: DownloadOptions, progressive: bo
     const read = async () => {
       if (bytes) file.add(bytes);
       else await fetchFile(source as string | URL, { ...options, onPart: (part) => file.add(part) });
-      return file.end();
+      return named(await file.end());
     };
     return { file: read(), coarse };
   };

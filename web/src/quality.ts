@@ -122,7 +122,7 @@ export class FadeIn {
   }
 
   /** What a call of `predictCloth` gets. */
-  of(options: Parameters<typeof fadeOf>[0]): Fade {
+  of(options: Asked | undefined): Fade {
     const asked = fadeOf(options);
     const fade = this.#fade;
     if (!fade || asked !== fixed.full) return asked;
@@ -134,8 +134,14 @@ export class FadeIn {
 
 const fixed = { full: new Fade('full'), coarse: new Fade('coarse'), skinned: new Fade('skinned') };
 
-/** @internal What a call of `predictCloth` asks for. */
-export function fadeOf(options: { quality?: Quality | undefined; fade?: Fade | undefined } | undefined): Fade {
+/** What of a call's options says how much of the network it takes. */
+export interface Asked {
+  quality?: Quality | undefined;
+  fade?: Fade | undefined;
+}
+
+/** What a call of `predictCloth` asks for. */
+export function fadeOf(options: Asked | undefined): Fade {
   const fade = options?.fade ?? fixed[options?.quality ?? 'full'];
   if (fade) return fade;
   throw new CtsnError('argument', `quality: "full", "coarse" or "skinned" wanted, "${String(options?.quality)}" found`);

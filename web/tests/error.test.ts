@@ -45,6 +45,14 @@ test.each([
   expect(error.name).toBe('CtsnError');
 });
 
+test('a web page or a glTF file where a model was wanted is named, with its address', async () => {
+  const page = await failure(() => loadModel('data:text/html,<!doctype html><title>Not found</title>'));
+  expect(page.code).toBe('not_safetensors');
+  expect(page.message).toMatch(/^data:text.html.*a web page.*address right/);
+  const figure = await failure(() => loadModel('data:model/gltf-binary,glTF%02%00%00%00'));
+  expect(figure.message).toMatch(/a glTF file.*ctsn bake/);
+});
+
 test('a wrong argument', async () => {
   expect((await failure(() => loadModel(7 as unknown as string))).code).toBe('argument');
   const { model, poses } = await loadGolden('tiny');

@@ -91,6 +91,8 @@ test('a map names bones that nothing else tells, by record or by function', () =
   const error = expect.objectContaining({ code: 'missing_joint', joint: 'Hips' }) as Error;
   expect(() => dress(strange)).toThrow(error);
   expect(() => dress(strange)).toThrow(/no bone "Hips": its bones are "bone0", "bone1"/);
+  const other = bound((name, at) => (at < 8 ? `other${at}` : name));
+  expect(() => dress(other)).toThrow(/no bone "Hips" \(8 of 24 joints are missing: is this the model of another character\?\)/);
   const maps: BoneMap[] = [
     { Hips: 'bone0', Spine: 'bone1' },
     (joint) => ({ Hips: 'bone0', Spine: 'bone1' })[joint],

@@ -4,10 +4,16 @@ import {
   Float32BufferAttribute,
   Matrix4,
   MeshBasicMaterial,
+  OrthographicCamera,
+  PerspectiveCamera,
   SkinnedMesh,
   Uint16BufferAttribute,
+  Vector3,
   type Bone,
+  type Camera,
   type Group,
+  type Scene,
+  type WebGLRenderer,
 } from 'three';
 import { afterEach, beforeEach, expect, test, vi } from 'vitest';
 import { CtsnError, loadModel, type ModelSource } from 'ctsn';
@@ -61,6 +67,51 @@ test('the first garment is there at once; the next comes before it, and only the
   await wardrobe.wear([]);
   expect(pass(wardrobe, 0.25)).toEqual({ dress: 0.5 });
   expect(pass(wardrobe, 0.25)).toEqual({});
+});
+
+test.each([
+  ['perspective', new PerspectiveCamera(40, 1.5, 0.1, 20)],
+  ['orthographic', new OrthographicCamera(-2, 2, 2, -2, 0.1, 20)],
+] as const)('what is worn over something is drawn nearer, at the same place of the picture (%s)', async (_, camera: Camera) => {
+  const { wardrobe } = await wardrobeOf({ layer: 0.05 });
+  await wardrobe.wear(['trousers', 'shirt']);
+  wardrobe.update();
+  camera.position.set(0.4, 1.2, 4);
+  camera.lookAt(0, 0.5, 0);
+  camera.updateMatrixWorld();
+  const look = (name: string) => {
+    const cloth = wardrobe.cloth(name)!;
+    const places = () => {
+      const all = cloth.geometry.getAttribute('position');
+      return Array.from({ length: all.count }, (_, i) => new Vector3().fromBufferAttribute(all, i).applyMatrix4(cloth.matrixWorld));
+    };
+    const drawn = (work: 'onBeforeRender' | 'onAfterRender') =>
+      cloth[work](undefined as unknown as WebGLRenderer, undefined as unknown as Scene, camera, cloth.geometry, cloth.material, undefined as never);
+    const before = places();
+    drawn('onBeforeRender');
+    const during = places();
+    drawn('onAfterRender');
+    expect(places()).toEqual(before);
+    const away = (at: Vector3) => -at.clone().applyMatrix4(camera.matrixWorldInverse).z;
+    const moved = before.map((at, i) => away(at) - away(during[i]!));
+    const shift = before.map((at, i) => at.clone().project(camera).sub(during[i]!.clone().project(camera)).setZ(0).length());
+    return { moved, shift };
+  };
+  // The innermost is where it is.
+  expect(Math.max(...look('trousers').moved.map(Math.abs))).toBe(0);
+  const { moved, shift } = look('shirt');
+  expect(Math.max(...shift)).toBeLessThan(1e-6);
+  expect(Math.min(...moved)).toBeGreaterThan(0.02);
+  expect(Math.max(...moved)).toBeLessThan(0.08);
+});
+
+test('what is no name of a garment is refused', async () => {
+  const { wardrobe } = await wardrobeOf();
+  await wardrobe.wear('shirt');
+  for (const wrong of [undefined, null, 7, { shirt: true }]) {
+    await expect(wardrobe.wear(wrong as unknown as string)).rejects.toMatchObject({ code: 'argument' });
+  }
+  expect(wardrobe.worn).toEqual(['shirt']);
 });
 
 test('several garments at once; who changes her mind finds what was on its way off', async () => {

@@ -20,8 +20,6 @@ import type { Stage } from './stage/stage.js';
 
 /** Predictions over which a change of quality is spread. */
 const BLEND = 12;
-/** Metres by which a garment is drawn before the one under it. */
-const LAYER = 0.025;
 /** Bones that may touch the floor. */
 const LOW = /foot|toe|paw|hand/i;
 
@@ -119,8 +117,6 @@ export class TryOn {
     this.#rivals.update(dressed, moment);
     this.#maps.update(dressed, this.transport.playing && !this.#own, moment);
     this.stage.follow(dressed.hip, dressed.head);
-    const { distance, camera } = this.stage;
-    dressed.worn.forEach(({ material }, layer) => material.raise(LAYER * layer, distance, camera.near));
     this.#render();
     this.transport.show(this.#own ? '' : clip, time, duration);
     this.cost.show(dressed);

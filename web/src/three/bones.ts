@@ -31,13 +31,20 @@ export function findBones(character: Character, joints: readonly string[], map: 
     }
   }
   const find = (name: string) => named.get(name) ?? named.get(PropertyBinding.sanitizeNodeName(name));
-  const bones = joints.map((joint) => {
+  const found = (joint: string): Object3D | undefined => {
     const told = ask(map, joint);
     if (told && typeof told !== 'string') return told;
-    const bone = told ? find(told) : (find(joint) ?? read.get(readName(joint)));
+    return told ? find(told) : (find(joint) ?? read.get(readName(joint)));
+  };
+  const bones = joints.map((joint) => {
+    const bone = found(joint);
     if (bone) return bone;
-    const sought = told ? `bone "${told}", which the map names for joint "${joint}"` : `bone "${joint}"`;
-    throw new CtsnError('missing_joint', `the character has no ${sought}: ${listNames(named)}`, { joint });
+    const told = ask(map, joint);
+    const sought = told ? `bone "${String(told)}", which the map names for joint "${joint}"` : `bone "${joint}"`;
+    const missing = joints.filter((one) => !found(one)).length;
+    // One or two have another name; of so many the figure is another.
+    const doubt = missing > joints.length / 8 && missing > 1 ? ` (${missing} of ${joints.length} joints are missing: is this the model of another character?)` : '';
+    throw new CtsnError('missing_joint', `the character has no ${sought}${doubt}: ${listNames(named)}`, { joint });
   });
   const twice = bones.findIndex((bone, at) => bones.indexOf(bone) !== at);
   if (twice < 0) return bones;

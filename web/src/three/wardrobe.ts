@@ -5,6 +5,7 @@ import type { Quality } from '../quality.js';
 import type { Character } from './bones.js';
 import { Cloth } from './cloth.js';
 import { Garment } from './garment.js';
+import { drawNearer } from './layer.js';
 import type { AnyClothModel, ClothOptions } from './options.js';
 import { Skin } from './skin.js';
 
@@ -12,13 +13,18 @@ import { Skin } from './skin.js';
 export type WearOptions = Pick<LoadOptions, 'signal' | 'onProgress'>;
 
 /** How a wardrobe dresses its character. */
-export interface WardrobeOptions extends ClothOptions {
+export interface WardrobeOptions<Name extends string = string> extends ClothOptions {
   /** What a garment is made of. One object may serve them all; it stays the caller's. */
-  material: Material | ((garment: string) => Material);
+  material: Material | ((garment: Name) => Material);
   /** Loads a model; `loadModel` if not given. The place for a backend, a device, or the models of `ctsn/worker`. */
   load?: ((source: ModelSource, options: WearOptions) => Promise<AnyClothModel>) | undefined;
   /** Seconds that a change takes; 0: none. A third of a second if not given. */
   fade?: number | undefined;
+  /**
+   * Metres by which a garment is drawn nearer to the camera than the one below it, since neither knows of the other;
+   * 0: none. 0.025 if not given.
+   */
+  layer?: number | undefined;
   /**
    * Which vertices of the character no one sees under a garment: 1 for those. Triangles of such vertices alone are not
    * drawn while it is worn. `coveredSkin` makes one. Nothing is hidden if not given.
@@ -27,18 +33,18 @@ export interface WardrobeOptions extends ClothOptions {
 }
 
 /**
- * The garments of one character, of which it wears some. Add it to the scene and call `update()` once per animation
+ * The garments of one character, by names of the page's, of which it wears some. Add it to the scene and call `update()` once per animation
  * frame, after the animation. Models are loaded when they are first worn, and disposed of when they no longer are.
  * Shadows are cast and received as `castShadow` and `receiveShadow` of this object say.
  */
-export class Wardrobe extends Group {
+export class Wardrobe<Name extends string = string> extends Group {
   override readonly type: string = 'Wardrobe';
   /** How much of the network the garments take. */
   quality: Quality | 'auto' = 'full';
 
   readonly #character: Character;
   readonly #sources: Map<string, ModelSource>;
-  readonly #options: WardrobeOptions;
+  readonly #options: WardrobeOptions<Name>;
   readonly #skin: Skin;
   /** What is on the character: worn, or on its way off. The innermost first. */
   readonly #garments = new Map<string, Garment>();
@@ -48,8 +54,8 @@ export class Wardrobe extends Group {
   #last: number | undefined;
   #disposed = false;
 
-  /** `garments`: model files of this character, by names of the page's. Nothing is loaded before it is worn. */
-  constructor(character: Character, garments: Readonly<Record<string, ModelSource>>, options: WardrobeOptions) {
+  /** `garments`: model files of this character, by name. Nothing is loaded before it is worn. */
+  constructor(character: Character, garments: Readonly<Record<Name, ModelSource>>, options: WardrobeOptions<Name>) {
     super();
     if (!(garments instanceof Object)) throw refuse('garments', 'model files by name, { tshirt: url }', garments);
     if (!(options instanceof Object) || !options.material) throw refuse('options', '{ material }', options);
@@ -60,41 +66,44 @@ export class Wardrobe extends Group {
   }
 
   /** Names of all garments. */
-  get garments(): readonly string[] {
-    return [...this.#sources.keys()];
+  get garments(): readonly Name[] {
+    return [...this.#sources.keys()] as Name[];
   }
 
   /** Names of what is worn, in the order in which it was put on. */
-  get worn(): readonly string[] {
-    return [...this.#garments].filter(([, { wanted }]) => wanted).map(([name]) => name);
+  get worn(): readonly Name[] {
+    return [...this.#garments].filter(([, { wanted }]) => wanted).map(([name]) => name as Name);
   }
 
   /** The cloth of a garment that is worn. */
-  cloth(garment: string): Cloth<Material, AnyClothModel> | undefined {
+  cloth(garment: Name): Cloth<Material, AnyClothModel> | undefined {
     const found = this.#garments.get(garment);
     return found?.wanted ? found.cloth : undefined;
   }
 
   /** Has one garment more, or another model for one that is not worn. */
-  stock(garment: string, source: ModelSource): this {
+  stock<More extends string>(garment: More | Name, source: ModelSource): Wardrobe<Name | More> {
     this.#sources.set(garment, source);
-    return this;
+    return this as unknown as Wardrobe<Name | More>;
   }
 
   /** Fetches a garment's file before it is wanted. */
-  async prefetch(garment: string): Promise<void> {
+  async prefetch(garment: Name): Promise<void> {
     const source = this.#source(garment);
     if (typeof source !== 'string' && !(source instanceof URL)) return;
     await preload(source).catch(named(garment));
   }
 
   /**
-   * Wears these garments, and these alone: several that do not overlap, or none. What was worn stays until all are
+   * Wears these garments, the innermost first, and these alone: one, several, or none. What was worn stays until all are
    * there. Answers true once they are worn; false if another call has overtaken this one. Where one of them is refused,
    * what was worn stays, and the error names the garment.
    */
-  async wear(garments: string | readonly string[], { signal, onProgress }: WearOptions = {}): Promise<boolean> {
-    const names = [...new Set(typeof garments === 'string' ? [garments] : garments)];
+  async wear(garments: Name | readonly Name[], { signal, onProgress }: WearOptions = {}): Promise<boolean> {
+    if (typeof garments !== 'string' && !Array.isArray(garments)) {
+      throw new CtsnError('argument', `wear wants the name of a garment or a list of names, found ${String(garments)}`);
+    }
+    const names = [...new Set<string>(typeof garments === 'string' ? [garments] : garments)];
     names.forEach((name) => this.#source(name));
     if (this.#disposed) throw new CtsnError('disposed', 'the wardrobe was used after dispose()');
     signal?.throwIfAborted();
@@ -163,8 +172,9 @@ export class Wardrobe extends Group {
       const model = await load(this.#source(name), options);
       try {
         options.signal?.throwIfAborted();
-        const made = typeof material === 'function' ? material(name) : material;
+        const made = typeof material === 'function' ? material(name as Name) : material;
         const cloth = new Cloth<Material, AnyClothModel>(model, this.#character, made, this.#options);
+        drawNearer(cloth, () => (this.#options.layer ?? 0.025) * Math.max(this.#wanted.indexOf(name), 0));
         garment = new Garment(cloth);
       } catch (error) {
         model.dispose();

@@ -55,6 +55,8 @@ export class Rivals extends Group {
       this.#cloths = wanted.map((of) => {
         const cloth = new Cloth<Material>(of.model, character.scene, of.material);
         cloth.castShadow = cloth.receiveShadow = true;
+        cloth.onBeforeRender = of.onBeforeRender;
+        cloth.onAfterRender = of.onAfterRender;
         const uv1 = of.geometry.getAttribute('uv1');
         if (uv1) cloth.geometry.setAttribute('uv1', uv1);
         this.add(cloth);

@@ -104,6 +104,8 @@ export class SimulatedCloth extends Mesh<BufferGeometry, Material> {
     }
     this.#whole.setIndex(new BufferAttribute(model.triangles, 1));
     this.castShadow = this.receiveShadow = true;
+    this.onBeforeRender = cloth.onBeforeRender;
+    this.onAfterRender = cloth.onAfterRender;
     this.frustumCulled = this.matrixAutoUpdate = this.matrixWorldAutoUpdate = false;
   }
 

@@ -53,6 +53,9 @@ export class Hem extends Mesh<BufferGeometry, Material> {
     this.frustumCulled = false;
     this.castShadow = this.receiveShadow = true;
     this.name = 'hem';
+    // Where one garment is drawn over another, its hem is too.
+    this.onBeforeRender = cloth.onBeforeRender;
+    this.onAfterRender = cloth.onAfterRender;
     cloth.add(this);
   }
 

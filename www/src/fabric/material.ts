@@ -65,16 +65,6 @@ export class FabricMaterial extends MeshPhysicalMaterial {
     if (this.map!.channel === 0) this.map!.repeat.setScalar(this.#metres / TILE);
   }
 
-  /**
-   * Is drawn so many metres nearer to a camera at that distance than it is: garments worn together do not know of one
-   * another, and the outer would show the inner where they touch.
-   */
-  raise(metres: number, distance: number, near: number): void {
-    this.polygonOffset = metres > 0;
-    // Depth is 1 - near / distance, in steps of 24 bits.
-    this.polygonOffsetUnits = (-metres * near * 2 ** 24) / distance ** 2;
-  }
-
   /** A plain material that looks the same, for a cloth that fades: it shares the textures, and frees none. */
   override clone(): this {
     return new MeshPhysicalMaterial().copy(this) as this;

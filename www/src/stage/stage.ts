@@ -144,11 +144,6 @@ export class Stage {
     return 0.5 + (left - right) / (2 * this.#canvas.clientWidth);
   }
 
-  /** How far the camera is from what it looks at, metres. */
-  get distance(): number {
-    return this.camera.position.distanceTo(this.controls.target);
-  }
-
   /** Moves the camera as the person at the controls wants; true if the view has changed since the last call. */
   turn(): boolean {
     this.controls.update();

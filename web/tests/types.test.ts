@@ -1,0 +1,11 @@
+// The declarations as a page's TypeScript reads them that trusts no library: all of them, not those alone that it names.
+import { execFileSync } from 'node:child_process';
+import { fileURLToPath } from 'node:url';
+import { expect, test } from 'vitest';
+
+const at = (path: string) => fileURLToPath(new URL(`../../${path}`, import.meta.url));
+
+test.each(['tsconfig.json', 'tsconfig.three.json'])('strict, without skipLibCheck: %s', (config) => {
+  const compile = () => execFileSync(process.execPath, [at('node_modules/typescript/bin/tsc'), '-p', at(`tests/types/${config}`)], { encoding: 'utf8' });
+  expect(compile).not.toThrow();
+});
