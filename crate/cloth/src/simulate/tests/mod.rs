@@ -9,6 +9,7 @@ mod hostile;
 mod layers;
 mod obstacle;
 mod pose;
+mod rescue;
 pub(super) mod scene;
 mod sphere;
 mod through;
