@@ -124,6 +124,26 @@ test('the address keeps figure, garment, fabric, pose and view', async () => {
   expect([...first.complaints, ...again.complaints]).toEqual([]);
 });
 
+test('clips are chosen by picture; the pictures leave pose and view as they were', async () => {
+  const { page, complaints } = await site.visit('?pose=walk:40&view=-20,12,2');
+  const before = await capture(page);
+  const shown = () => page.locator('#stage').screenshot();
+  await open(page, 'Motion');
+  await expect.poll(() => page.locator('#clips img').count(), patience).toBe(32);
+  const sizes = await page.locator('#clips img').evaluateAll((all) => all.map((image) => (image as HTMLImageElement).src.length));
+  expect(Math.min(...sizes)).toBeGreaterThan(10);
+  const after = await capture(page);
+  expect(difference(after.positions, before.positions)).toBe(0);
+  expect(new URL(page.url()).searchParams.get('view') ?? '-20,12,2').toBe('-20,12,2');
+  await page.screenshot({ path: `${out}/clips.png` });
+  const walking = await shown();
+  await page.getByRole('button', { name: 'dance', exact: true }).click();
+  await expect.poll(() => page.locator('#clip').inputValue(), patience).toBe('dance');
+  await expect.poll(async () => (await shown()).equals(walking), patience).toBe(false);
+  expect(await page.locator('#clips [aria-pressed=true]').textContent()).toBe('dance');
+  expect(complaints).toEqual([]);
+});
+
 test('the simulation stands beside the network, at its own moments, and its distance is told', async () => {
   const { page, complaints } = await site.visit('?figure=sphere&wear=sheet&pose=wander 1:20');
   const legend = page.locator('#legend-name');

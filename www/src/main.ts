@@ -7,6 +7,7 @@ import { run, tell } from './failure.js';
 import { RATE } from './figure/character.js';
 import type { Demo } from './hook.js';
 import { layOut } from './layout.js';
+import { Clips } from './motion/clips.js';
 import { readAddress, writeAddress, type Scene } from './share/address.js';
 import { acceptFiles } from './share/drop.js';
 import { save, takePicture } from './share/picture.js';
@@ -46,7 +47,10 @@ async function open(page: TryOn, scene: Scene): Promise<void> {
 /** Keeps the address of the page that of what it shows; it changes a while after the last change. */
 function keepAddress(page: TryOn, query: URLSearchParams): void {
   let waiting = 0;
+  const clips = new Clips(page);
+  clips.tell();
   page.onScene = () => {
+    clips.tell();
     clearTimeout(waiting);
     waiting = window.setTimeout(() => {
       const kept = ['backend'].flatMap((name) => (query.has(name) ? [`${name}=${query.get(name)}`] : []));

@@ -157,6 +157,21 @@ export class Stage {
     this.renderer.render(this.scene, this.camera);
   }
 
+  /** Does something without controls, seen from elsewhere, and leaves all as it was. */
+  aside<T>(view: View | undefined, work: () => T): T {
+    const [position, target, margins] = [this.camera.position.clone(), this.controls.target.clone(), this.#margins];
+    this.frame({ left: 0, right: 0, top: 0, bottom: 0 });
+    if (view) this.look(view);
+    try {
+      return work();
+    } finally {
+      this.frame(margins);
+      this.controls.target.copy(target);
+      this.camera.position.copy(position);
+      this.controls.update();
+    }
+  }
+
   /** Moves the figure into the middle of what no control covers, and as far away as it then must be. */
   frame(margins: Margins): void {
     this.#margins = margins;
