@@ -15,7 +15,7 @@ mod timing;
 use crate::dataset::{Record, Sample, Setup, Split, mixed_path, pose_path, twin_path};
 use crate::judging::check_joints;
 use crate::{Error, Result};
-use ctsn_cloth::simulate::Simulator;
+use ctsn_cloth::simulate::{Outcome, Simulator};
 use ctsn_rig::mixed::{has_limbs, mixed};
 use ctsn_rig::path::is_sound;
 use ctsn_rig::{Character, Pose, joints, numbers, vertices};
@@ -125,14 +125,7 @@ impl<'a> Run<'a> {
                 Kind::Twin => noise::turned(character, frame(), task.clip, task.frame),
                 Kind::Mixed => mixed(character, &learned, task.frame),
             };
-            let outcome = match &self.teacher {
-                None => self.simulator.simulate(&self.template, &pose),
-                Some(teacher) => match teacher.predict(character, &pose, &self.template) {
-                    Ok(start) => self.simulator.relax(&self.template, &pose, &start),
-                    // Far outside of what it has seen a model may overflow; the simulator says so of its pose.
-                    Err(_) => self.simulator.relax(&self.template, &pose, &[]),
-                },
-            };
+            let outcome = self.outcome(&pose);
             let record = Record::new(task.clip, task.frame, &outcome);
             let sample = Sample { record, joints: joints(&pose), truth: numbers(&outcome.positions) };
             sample.write(&task.path)?;
@@ -141,6 +134,17 @@ impl<'a> Run<'a> {
             Ok(())
         };
         self.tasks.par_iter().with_max_len(1).try_for_each(run)
+    }
+
+    /// One pose, simulated from what the teacher predicts; along the path where there is none. So it is, too, where
+    /// layers of what was predicted are jammed, and where a model overflows, far outside of what it has seen.
+    fn outcome(&self, pose: &Pose) -> Outcome {
+        let predicted = self.teacher.as_ref().and_then(|teacher| {
+            let start = teacher.predict(self.request.character, pose, &self.template).ok()?;
+            Some(self.simulator.relax(&self.template, pose, &start))
+        });
+        let moved = predicted.filter(|outcome| outcome.drift.is_finite());
+        moved.unwrap_or_else(|| self.simulator.simulate(&self.template, pose))
     }
 }
 
