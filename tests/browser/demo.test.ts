@@ -93,7 +93,7 @@ test('the three sources of the cloth differ on the page, and are seen side by si
   const alone = await strip();
   await open(page, 'Compare');
   await page.getByLabel('with plain skinning').check({ force: true });
-  expect(await page.getByText('Plain skinning', { exact: true }).isVisible()).toBe(true);
+  await expect.poll(() => page.getByText('Plain skinning', { exact: true }).isVisible(), patience).toBe(true);
   await expect.poll(async () => (await strip()).equals(alone), patience).toBe(false);
   await page.getByLabel('Where the network').fill('0.2');
   await page.screenshot({ path: `${out}/compare.png` });

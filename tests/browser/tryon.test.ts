@@ -202,7 +202,7 @@ test('everything is reached by the keyboard, in the order in which it is seen, a
   }
   await page.locator('#stage').focus();
   for (const key of ['ArrowRight', 'ArrowUp', '-', 'PageUp']) await page.keyboard.press(key);
-  await expect.poll(() => new URL(page.url()).searchParams.get('view'), patience).toBe('24,12,2.95,0.1');
+  await expect.poll(() => new URL(page.url()).searchParams.get('view'), patience).toBe('28,11,2.71,0.1');
   const unnamed = await page.locator('button:visible, input:visible, select:visible').evaluateAll((all) =>
     all.filter((one) => !(one.getAttribute('aria-label') || (one as HTMLInputElement).labels?.[0]?.textContent?.trim() || one.textContent?.trim())).map((one) => one.outerHTML),
   );
