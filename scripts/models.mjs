@@ -26,7 +26,7 @@ async function train(name, minutes) {
   await ctsn('pack', character, '-o', page(`${figure}.glb`));
   const truth = out(`${name}.truth`);
   await ctsn('simulate', character, garment, '--rate', 6, '--clip', PAIRS[name].shown, '--from', model, '--pinched', 0, '-o', truth);
-  await ctsn('pack', truth, '-o', page(`${name}.truth.safetensors`));
+  await ctsn('pack', truth, '-o', page(`${name}.truth`));
 }
 
 await main(async () => {

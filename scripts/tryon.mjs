@@ -7,7 +7,7 @@ const POSES = ['showcase:300', 'walk:12', 'cruise:20', 'wander 1:20'];
 
 export const build = () => need('vite', ['build', at('www'), '--logLevel', 'warn']);
 
-/** Opens the built page: figures and their garments as `cast`, `show(query)`, and `picture([width, height])` in webp. */
+/** Opens the built page: its `cast`, figures and their garments; `show(query)`; `picture([width, height])` in webp. */
 export async function withTryOn(work) {
   const [{ preview }, { chromium: playwright }] = await Promise.all([import('vite'), import('playwright-core')]);
   const server = await preview({ root: at('www'), preview: { port: 0 }, logLevel: 'silent' });

@@ -1,5 +1,5 @@
-// What a visitor of the demo page waits for, and what changing clothes leaves behind, in Chromium: the built site, served
-// with brotli, over a line as slow as a phone's.
+// What a visitor of the demo page waits for, and what changing clothes leaves behind, in Chromium: the built site,
+// served with brotli, over a line as slow as a phone's.
 import { brotliCompressSync } from 'node:zlib';
 import { existsSync, readFileSync } from 'node:fs';
 import { createServer } from 'node:http';

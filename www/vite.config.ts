@@ -28,7 +28,7 @@ function cast(): Plugin {
       const garments = figure.garments.flatMap((garment) => {
         const pair = `${figure.id}-${garment.id}`;
         const model = find(pair, 'safetensors');
-        return model ? [{ ...garment, ...model, picture: find(pair, 'webp')?.file, truth: find(pair, 'truth.safetensors')?.file }] : [];
+        return model ? [{ ...garment, ...model, picture: find(pair, 'webp')?.file, truth: find(pair, 'truth')?.file }] : [];
       });
       return body && garments.length > 0 ? [{ ...figure, ...body, picture: find(figure.id, 'webp')?.file, garments }] : [];
     });

@@ -1,4 +1,4 @@
-// The declarations as a page's TypeScript reads them that trusts no library: all of them, not those alone that it names.
+// The declarations as the TypeScript of a page reads them that trusts no library: all of them, named by it or not.
 import { execFileSync } from 'node:child_process';
 import { fileURLToPath } from 'node:url';
 import { expect, test } from 'vitest';

@@ -33,9 +33,9 @@ export interface WardrobeOptions<Name extends string = string> extends ClothOpti
 }
 
 /**
- * The garments of one character, by names of the page's, of which it wears some. Add it to the scene and call `update()` once per animation
- * frame, after the animation. Models are loaded when they are first worn, and disposed of when they no longer are.
- * Shadows are cast and received as `castShadow` and `receiveShadow` of this object say.
+ * The garments of one character, by names of the page's, of which it wears some. Add it to the scene and call
+ * `update()` once per animation frame, after the animation. Models are loaded when they are first worn, and disposed of
+ * when they no longer are. Shadows are cast and received as `castShadow` and `receiveShadow` of this object say.
  */
 export class Wardrobe<Name extends string = string> extends Group {
   override readonly type: string = 'Wardrobe';
@@ -95,9 +95,9 @@ export class Wardrobe<Name extends string = string> extends Group {
   }
 
   /**
-   * Wears these garments, the innermost first, and these alone: one, several, or none. What was worn stays until all are
-   * there. Answers true once they are worn; false if another call has overtaken this one. Where one of them is refused,
-   * what was worn stays, and the error names the garment.
+   * Wears these garments, the innermost first, and these alone: one, several, or none. What was worn stays until all
+   * are there. Answers true once they are worn; false if another call has overtaken this one. Where one of them is
+   * refused, what was worn stays, and the error names the garment.
    */
   async wear(garments: Name | readonly Name[], { signal, onProgress }: WearOptions = {}): Promise<boolean> {
     if (typeof garments !== 'string' && !Array.isArray(garments)) {

@@ -20,7 +20,7 @@ const CONTROLS = [
 ] as const;
 const button = (name: string, value: string) => document.querySelector<HTMLInputElement>(`input[name=${name}][value=${value}]`)!;
 
-/** The simulated truth of what is worn. Its frames are few: while they are looked at, the figure moves from one to the next. */
+/** The simulated truth of what is worn. Its frames are few: looked at, the figure moves from one to the next. */
 export class Simulated {
   /** Called when a control wants frames. */
   onWanted: () => void = () => {};

@@ -4,6 +4,15 @@ export interface Frame {
   readonly seconds: number;
 }
 
+/** What its file holds. */
+interface Packed {
+  frames: Frame[];
+  vertices: number;
+  step: number;
+  least: number[];
+  positions: string;
+}
+
 /** Simulated frames of a garment, as `ctsn pack DATA` leaves them (docs/format.md). */
 export class Truth {
   readonly frames: readonly Frame[];
@@ -13,15 +22,12 @@ export class Truth {
   readonly #step: number;
   readonly #least: readonly number[];
 
-  private constructor(bytes: ArrayBuffer) {
-    const length = Number(new DataView(bytes).getBigUint64(0, true));
-    const header = JSON.parse(new TextDecoder().decode(new Uint8Array(bytes, 8, length)));
-    const { dtype, shape, data_offsets: [from, to] } = header['truth.positions'];
-    if (dtype !== 'U16') throw new Error(`its positions are ${dtype}, wanted U16`);
-    const { frames, step, least } = header.__metadata__;
-    this.#numbers = new Uint16Array(bytes.slice(8 + length + from, 8 + length + to));
-    this.count = shape[1];
-    [this.frames, this.#step, this.#least] = [frames, step, least].map((text) => JSON.parse(text)) as [Frame[], number, number[]];
+  private constructor({ frames, vertices, step, least, positions }: Packed) {
+    const bytes = Uint8Array.from(atob(positions), (byte) => byte.charCodeAt(0));
+    this.#numbers = new Uint16Array(bytes.buffer);
+    [this.frames, this.count, this.#step, this.#least] = [frames, vertices, step, least];
+    const wanted = 3 * vertices * frames.length;
+    if (this.#numbers.length !== wanted) throw new Error(`${this.#numbers.length} numbers, wanted ${wanted}`);
   }
 
   static async fetch(file: string): Promise<Truth> {
@@ -29,7 +35,7 @@ export class Truth {
     if (!response.ok) throw new Error(`${file}: HTTP ${response.status} ${response.statusText}`.trim());
     const plain = response.body!.pipeThrough(new DecompressionStream('gzip'));
     try {
-      return new Truth(await new Response(plain).arrayBuffer());
+      return new Truth((await new Response(plain).json()) as Packed);
     } catch (error) {
       throw new Error(`${file} has no simulated frames: ${error instanceof Error ? error.message : String(error)}`);
     }

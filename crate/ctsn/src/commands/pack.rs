@@ -24,8 +24,8 @@ const RATE: f64 = 5.0;
 /// A character (`ctsn pack character.glb -o small.glb`) is coded by meshoptimizer: three.js reads it once GLTFLoader
 /// has its MeshoptDecoder.
 ///
-/// The frames of a dataset (`ctsn pack data/andy-tshirt -o truth.safetensors`) become one file in steps of 0.1 mm, for a
-/// page to show what was simulated beside what is predicted.
+/// The frames of a dataset (`ctsn pack data/andy-tshirt -o andy-tshirt.truth`) become one file in steps of 0.1 mm, for
+/// a page to show what was simulated beside what is predicted.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// Model file (safetensors), a character (GLB), or the folder of a dataset
@@ -88,7 +88,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
 /// Packs the frames of a dataset.
 fn frames(Arguments { file: path, output, .. }: &Arguments) -> Result<()> {
     let data = Dataset::read(path)?;
-    let packed = file::gzip(&packing::truth(&data)?.to_bytes());
+    let packed = file::gzip(&serde_json::to_vec(&packing::truth(&data)?)?);
     file::write(output, &packed)?;
     println!("{}: {} frames, {} bytes", file_name(output), data.samples.len(), packed.len());
     Ok(())
