@@ -19,13 +19,11 @@ async function train(name, minutes) {
   if (!existsSync(garment)) {
     await ctsn('garment', character, '--kind', kind, '--vertices', PAIRS[name].vertices, '-o', garment);
   }
-  // Their own motion keeps our characters' limbs out of one another: no pose needs pinched cloth.
-  const how = ['--own-motion', '--pinched', 0, '--time-budget', `${minutes}m`];
-  await ctsn('bake', character, garment, ...how, '-o', model);
+  await ctsn('bake', character, garment, '--own-motion', '--time-budget', `${minutes}m`, '-o', model);
   await ctsn('pack', model, character, '--report', '-o', page(`${name}.safetensors`));
   await ctsn('pack', character, '-o', page(`${figure}.glb`));
   const truth = out(`${name}.truth`);
-  await ctsn('simulate', character, garment, '--rate', 6, '--clip', PAIRS[name].shown, '--from', model, '--pinched', 0, '-o', truth);
+  await ctsn('simulate', character, garment, '--rate', 6, '--clip', PAIRS[name].shown, '--from', model, '-o', truth);
   await ctsn('pack', truth, '-o', page(`${name}.truth`));
 }
 

@@ -1,8 +1,23 @@
 //! `ctsn bake`: its steps, and what it keeps between them.
 
-use super::made::{Folder, write_character, write_garment};
+use super::made::{Folder, write_blanket, write_character, write_garment};
+use glam::{DAffine3, DVec3};
 
-use glam::DVec3;
+/// A folder with a character that turns for so many frames, and a blanket of few vertices on it.
+fn turning(frames: usize) -> Folder {
+    let folder = Folder::new();
+    write_character(&folder, |character| {
+        let bound: Vec<_> = character.joints.iter().map(|joint| joint.inverse_bind.inverse()).collect();
+        let turned = |frame: usize| DAffine3::from_rotation_y(0.05 * frame as f64);
+        let pose = |frame: usize| bound.iter().map(|joint| turned(frame) * *joint).collect();
+        character.clips[0].poses = (0..frames).map(pose).collect();
+    });
+    write_blanket(&folder);
+    folder
+}
+
+/// A bake on the blanket's own mesh.
+const BAKE: &str = "bake character.glb garment.glb --resample never -o out.safetensors";
 
 #[test]
 fn a_bake_keeps_to_its_garment() {
@@ -23,10 +38,9 @@ fn a_bake_keeps_to_its_garment() {
 
 #[test]
 fn a_bake_learns_from_paths_and_then_from_its_own_predictions() {
-    let folder = Folder::new();
-    folder.accepts("character sphere -o sphere.glb");
-    let bake = "bake sphere.glb --kind sheet --vertices 500 --poses 70 --epochs 2 -o out.safetensors";
-    let told = folder.accepts(bake);
+    let folder = turning(100);
+    let bake = format!("{BAKE} --poses 70 --epochs 2");
+    let told = folder.accepts(&bake);
     for part in ["out.safetensors: a first model", "unseen frames", "plain skinning"] {
         assert!(told.contains(part), "wanted {part:?} in {told}");
     }
@@ -37,17 +51,15 @@ fn a_bake_learns_from_paths_and_then_from_its_own_predictions() {
     assert!(teacher("out.work/first").is_none() && teacher("out.work").is_some());
     let [first, model] = ["out.work/first.safetensors", "out.safetensors"].map(|name| std::fs::read(folder.path(name)));
     assert_ne!(first.expect("a model"), *model.as_ref().expect("a model"), "the second learned from other poses");
-    let again = folder.accepts(bake);
+    let again = folder.accepts(&bake);
     assert!(again.contains("0 poses to simulate") && again.contains("has been trained so already"), "{again}");
     assert_eq!(std::fs::read(folder.path("out.safetensors")).ok(), model.ok());
 }
 
 #[test]
 fn a_bake_in_too_little_time_still_makes_a_model() {
-    let folder = Folder::new();
-    folder.accepts("character sphere -o sphere.glb");
-    let told =
-        folder.accepts("bake sphere.glb --kind sheet --vertices 500 --poses 90 --time-budget 2s -o out.safetensors");
+    let folder = turning(100);
+    let told = folder.accepts(&format!("{BAKE} --poses 90 --time-budget 1s"));
     // The budget has time for a few; simulated were as many as a training wants, some of which may be left out.
     let kept = ctsn_train::report::Report::new(&folder.path("out.work")).expect("a report").kept;
     assert!((60..90).contains(&kept) && told.contains("unseen frames"), "{kept} kept: {told}");
