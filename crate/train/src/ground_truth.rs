@@ -136,15 +136,14 @@ impl<'a> Run<'a> {
         self.tasks.par_iter().with_max_len(1).try_for_each(run)
     }
 
-    /// One pose, simulated from what the teacher predicts; along the path where there is none. So it is, too, where
-    /// layers of what was predicted are jammed, and where a model overflows, far outside of what it has seen.
+    /// One pose, simulated from what the teacher predicts; along the path where there is no teacher. So it is, too,
+    /// where what comes of a prediction would be left out: layers of it may be jammed, or on the wrong side of a limb.
     fn outcome(&self, pose: &Pose) -> Outcome {
         let predicted = self.teacher.as_ref().and_then(|teacher| {
             let start = teacher.predict(self.request.character, pose, &self.template).ok()?;
             Some(self.simulator.relax(&self.template, pose, &start))
         });
-        let moved = predicted.filter(|outcome| outcome.drift.is_finite());
-        moved.unwrap_or_else(|| self.simulator.simulate(&self.template, pose))
+        predicted.filter(Outcome::converged).unwrap_or_else(|| self.simulator.simulate(&self.template, pose))
     }
 }
 

@@ -14,26 +14,27 @@ use super::untangle::untangle;
 use ctsn_rig::Pose;
 
 /// How often a pose is tried again: what is held may draw its neighbours in, which are then held as well.
-const ROUNDS: usize = 4;
+pub(super) const ROUNDS: usize = 4;
 /// How far a vertex is put out at most, metres. Tight trousers are pulled 30 mm into a bent knee.
 const FURTHEST: f64 = 0.06;
 /// Stiffness of what holds it, N/m: that of a few contacts, so that a stretch of a tenth moves it by millimetres.
 const GRIP: f64 = 1000.0;
 
 impl Simulator {
-    /// Relaxes the cloth on the posed body; again, where the outcome would be left out. `to_body`: from the solver's
-    /// space to the body frame of `pose`.
+    /// Relaxes the cloth on the posed body; again, so many times at most, where the outcome would be left out. `to_body`:
+    /// from the solver's space to the body frame of `pose`.
     pub(super) fn settle<'a>(
         &'a self,
         mut solver: Solver<'a>,
         body: &PosedBody,
         iterations: usize,
+        rounds: usize,
         pose: &Pose,
         to_body: DAffine3,
     ) -> Outcome {
         let relaxed = solver.relax(Some(body), iterations);
         let mut outcome = self.outcome(&solver, relaxed, pose, to_body);
-        for _ in 0..ROUNDS {
+        for _ in 0..rounds {
             if outcome.converged() {
                 break;
             }

@@ -13,6 +13,7 @@ use super::material::Material;
 use super::newton::{Probe, Solver};
 use super::outcome::{Outcome, Status, stretch};
 use super::outer_skin::{outer_skin, smooth};
+use super::rescue::ROUNDS;
 use super::settings::Settings;
 use super::untangle::untangle;
 use crate::wrap::SKIN;
@@ -80,7 +81,7 @@ impl Simulator {
         let mut solver = self.level.solver(&self.settings, self.rest.clone());
         self.level.pin(&mut solver, &self.rest, &self.character.skinning(&pose));
         let (iterations, to_body) = (10 * self.settings.relax_iterations, body_frame(&self.character, &pose));
-        let Outcome { status, positions, .. } = self.settle(solver, &body, iterations, &pose, to_body);
+        let Outcome { status, positions, .. } = self.settle(solver, &body, iterations, ROUNDS, &pose, to_body);
         match status {
             Status::Converged => Ok(positions),
             Status::Rejected { reason } => Err(Error::Simulation(format!("canonical drape: {reason}"))),
@@ -98,11 +99,12 @@ impl Simulator {
             Some(refined) => refined,
             None => self.travel(&self.level, template, &way),
         };
-        self.settle(solver, &body, self.settings.relax_iterations, pose, DAffine3::IDENTITY)
+        self.settle(solver, &body, self.settings.relax_iterations, ROUNDS, pose, DAffine3::IDENTITY)
     }
 
     /// Relaxes `pose` from `start` (body frame [n]), which may cross itself and the body a little. The equilibrium is
     /// as true as that which [`simulate`](Self::simulate) comes to, but of all there are the one nearest to the start.
+    /// What is left out is tried again once only: a start on the wrong side of a limb stays there.
     pub fn relax(&self, template: &[DVec3], pose: &Pose, start: &[DVec3]) -> Outcome {
         if let Err(reason) = self.check(template, pose).and_then(|()| self.check_cloth("start", start)) {
             return self.refuse(reason);
@@ -114,7 +116,7 @@ impl Simulator {
         let heights = self.cover.heights(&self.body.posed(pose), &self.collider, &end);
         let body = self.collider.raised(&end, &heights, 1.0);
         self.level.pin(&mut solver, template, &end);
-        self.settle(solver, &body, self.settings.relax_iterations, pose, DAffine3::IDENTITY)
+        self.settle(solver, &body, self.settings.relax_iterations, 1, pose, DAffine3::IDENTITY)
     }
 
     /// Why this cannot be simulated.

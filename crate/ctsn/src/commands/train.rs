@@ -11,7 +11,8 @@ use std::path::{Path, PathBuf};
 
 /// Train the network on a dataset: on all clips but the last tenth (with fewer than ten: on the first 90 % of each)
 ///
-/// Mixed poses of the dataset are used too. On a character with limbs, more poses are mixed during training, without
+/// Mixed poses of the dataset are used too, and of symmetric characters in symmetric garments every pose a second time,
+/// seen in a mirror. On a character with limbs, more poses are mixed during training, without
 /// simulation: cloth learns from them to stay outside the body. A tenth of the frames is held back and predicted after
 /// every epoch: the model with the least error on them is kept. The learning curve is written beside the model
 /// (MODEL.curve.csv). A checkpoint is written every few epochs; interrupted training continues from it, with the same
@@ -68,19 +69,27 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         Some(garment) => simulate::unsimulated(&arguments.dataset, garment)?,
         None => Dataset::read(&arguments.dataset)?,
     };
-    let slices = match arguments.self_supervised {
+    let mut slices = match arguments.self_supervised {
         true => Slices { train: dataset.samples.iter().collect(), mixed: 0, validation: Vec::new() },
         false => training::slices(&dataset)?,
     };
     let files = Files { checkpoint: output.with_extension("checkpoint"), curve: output.with_extension("curve.csv") };
     // Before the training: an unusable body must not be found out after hours.
     let body = body(&dataset.setup, &slices.train)?;
+    let images = match arguments.self_supervised {
+        true => Vec::new(),
+        false => training::mirrored(&dataset.setup, &slices.train)?,
+    };
+    slices.train.extend(&images);
     let by: By = match arguments {
         Arguments { self_supervised: true, .. } => Trainer::self_supervised,
         Arguments { teacher: true, .. } => Trainer::teacher,
         _ => Trainer::new,
     };
     let mut trainer = asked.trainer(by, &dataset.setup, &slices, body)?;
+    if !images.is_empty() {
+        println!("half of them are images of the others in a mirror: character and garment are symmetric");
+    }
     let key = key(&dataset.setup, &slices, &trainer)?;
     // What was learned, exactly, whatever the storage asked for.
     let learned = output.with_extension("f32.safetensors");
