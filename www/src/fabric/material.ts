@@ -38,6 +38,9 @@ export class FabricMaterial extends MeshPhysicalMaterial {
     this.look = look;
     const { relief, tile, sheenTint, ...rest } = fabrics[look.fabric];
     this.roughness = rest.roughness;
+    this.specularIntensity = rest.gloss;
+    this.specularColor = new Color('#fff').lerp(new Color(look.colour), rest.glossTint);
+    this.anisotropy = rest.grain;
     this.sheen = rest.sheen;
     this.sheenRoughness = rest.sheenRoughness;
     this.sheenColor = new Color('#fff').lerp(new Color(look.colour), sheenTint);
