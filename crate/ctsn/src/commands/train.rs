@@ -70,7 +70,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         None => Dataset::read(&arguments.dataset)?,
     };
     let mut slices = match arguments.self_supervised {
-        true => Slices { train: dataset.samples.iter().collect(), mixed: 0, validation: Vec::new() },
+        true => Slices { train: dataset.samples.iter().collect(), mixed: 0, images: 0, validation: Vec::new() },
         false => training::slices(&dataset)?,
     };
     let files = Files { checkpoint: output.with_extension("checkpoint"), curve: output.with_extension("curve.csv") };
@@ -80,16 +80,13 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         true => Vec::new(),
         false => training::mirrored(&dataset.setup, &slices.train)?,
     };
-    slices.train.extend(&images);
+    slices.add(&images);
     let by: By = match arguments {
         Arguments { self_supervised: true, .. } => Trainer::self_supervised,
         Arguments { teacher: true, .. } => Trainer::teacher,
         _ => Trainer::new,
     };
     let mut trainer = asked.trainer(by, &dataset.setup, &slices, body)?;
-    if !images.is_empty() {
-        println!("half of them are images of the others in a mirror: character and garment are symmetric");
-    }
     let key = key(&dataset.setup, &slices, &trainer)?;
     // What was learned, exactly, whatever the storage asked for.
     let learned = output.with_extension("f32.safetensors");
@@ -167,9 +164,10 @@ impl Training {
         model.body = Some(body);
         model.cut = Some(Cut::new(setup.garment.clone(), &model.graph, STEPS)?);
         let mixed = if slices.mixed == 0 { String::new() } else { format!(" ({} of them mixed)", slices.mixed) };
+        let images = if slices.images == 0 { "" } else { ", each also in a mirror" };
         println!(
-            "{} poses to learn from{mixed}, {} to validate, {} vertices, {architecture:?}",
-            slices.train.len(),
+            "{} poses to learn from{mixed}{images}, {} to validate, {} vertices, {architecture:?}",
+            slices.train.len() - slices.images,
             slices.validation.len(),
             model.sizes.vertices
         );
@@ -185,8 +183,9 @@ impl Training {
             "garment": setup.description.garment,
             "fabric": setup.description.material.name,
             "clips": setup.description.clips,
-            "poses": slices.train.len(),
+            "poses": slices.train.len() - slices.images,
             "mixed": slices.mixed,
+            "mirrored": slices.images,
             "without": self.without.iter().map(part).collect::<Vec<_>>(),
             "epoch": best.epoch,
             "batch": self.settings.batch,

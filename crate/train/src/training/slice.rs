@@ -9,12 +9,22 @@ const POSES: usize = 50;
 /// The poses of a training.
 #[derive(Clone, Debug)]
 pub struct Slices<'a> {
-    /// What is learned from, mixed poses last.
+    /// What is learned from, mixed poses last, behind them [`mirrored`](super::mirrored) ones, if they are added.
     pub train: Vec<&'a Sample>,
     /// How many of these are mixed poses.
     pub mixed: usize,
+    /// How many are images of the others.
+    pub images: usize,
     /// What is predicted after every epoch.
     pub validation: Vec<&'a Sample>,
+}
+
+impl<'a> Slices<'a> {
+    /// Adds images of the poses to learn from.
+    pub fn add(&mut self, images: &'a [Sample]) {
+        self.images += images.len();
+        self.train.extend(images);
+    }
 }
 
 /// The poses of `dataset` to train with; checks that there is enough of everything.
@@ -34,5 +44,5 @@ pub fn slices(dataset: &Dataset) -> Result<Slices<'_>> {
             return Err(Error::Dataset(format!("the {name} split is empty: {poses} poses of {clips} clips in all")));
         }
     }
-    Ok(Slices { train, mixed: dataset.mixed.len(), validation })
+    Ok(Slices { train, mixed: dataset.mixed.len(), images: 0, validation })
 }

@@ -206,7 +206,7 @@ fn validation_is_a_tenth_of_the_training_clips() {
     assert!(validation.iter().all(|sample| (41..45).contains(&sample.record.frame)));
     let mut mixed = dataset(2, 50);
     mixed.mixed = mixed.samples[..3].to_vec();
-    let Slices { train, mixed: count, validation } = slices(&mixed).unwrap();
+    let Slices { train, mixed: count, validation, .. } = slices(&mixed).unwrap();
     assert_eq!(
         (train.len(), count, validation.len(), mixed.split(Split::Test).len()),
         (85, 3, 8, 10),
