@@ -21,8 +21,8 @@ const FURTHEST: f64 = 0.06;
 const GRIP: f64 = 1000.0;
 
 impl Simulator {
-    /// Relaxes the cloth on the posed body; again, so many times at most, where the outcome would be left out. `to_body`:
-    /// from the solver's space to the body frame of `pose`.
+    /// Relaxes the cloth on the posed body; again, so many times at most, where the outcome would be left out.
+    /// `to_body`: from the solver's space to the body frame of `pose`.
     pub(super) fn settle<'a>(
         &'a self,
         mut solver: Solver<'a>,

@@ -69,17 +69,12 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         Some(garment) => simulate::unsimulated(&arguments.dataset, garment)?,
         None => Dataset::read(&arguments.dataset)?,
     };
-    let mut slices = match arguments.self_supervised {
-        true => Slices { train: dataset.samples.iter().collect(), mixed: 0, images: 0, validation: Vec::new() },
-        false => training::slices(&dataset)?,
-    };
+    let mut slices = slices(arguments, &dataset)?;
     let files = Files { checkpoint: output.with_extension("checkpoint"), curve: output.with_extension("curve.csv") };
     // Before the training: an unusable body must not be found out after hours.
     let body = body(&dataset.setup, &slices.train)?;
-    let images = match arguments.self_supervised {
-        true => Vec::new(),
-        false => training::mirrored(&dataset.setup, &slices.train)?,
-    };
+    let images =
+        if arguments.self_supervised { Vec::new() } else { training::mirrored(&dataset.setup, &slices.train)? };
     slices.add(&images);
     let by: By = match arguments {
         Arguments { self_supervised: true, .. } => Trainer::self_supervised,
@@ -125,6 +120,14 @@ pub fn run(arguments: &Arguments) -> Result<()> {
             }
         }
     }
+}
+
+/// What to train with: without truth all there is, for nothing of it shows an error.
+fn slices<'a>(arguments: &Arguments, dataset: &'a Dataset) -> Result<Slices<'a>> {
+    if !arguments.self_supervised {
+        return Ok(training::slices(dataset)?);
+    }
+    Ok(Slices { train: dataset.samples.iter().collect(), mixed: 0, images: 0, validation: Vec::new() })
 }
 
 /// Whether this same training has made the model at `output`; then stores it as asked, from what was `learned`.
