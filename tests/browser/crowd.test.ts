@@ -23,7 +23,7 @@ test('fifty in the coarse quality; auto gives some of them more, and what is out
   console.log(`${coarse} cloths in the coarse quality: ${milliseconds.toFixed(1)} ms of predictions per frame`);
   await page.getByLabel('Auto', { exact: true }).check({ force: true });
   // Enough for all drapes and a few of the folds.
-  await page.getByLabel('Milliseconds per frame').fill(String(Math.min(Math.ceil(1.3 * milliseconds), 60)));
+  await page.getByLabel('Milliseconds per frame').fill(String(Math.min(Math.ceil(1.3 * milliseconds), 120)));
   // Some that try it, then the blend back.
   await frames(24);
   const auto = await tally();
