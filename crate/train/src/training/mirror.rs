@@ -23,8 +23,8 @@ pub fn mirrored(setup: &Setup, samples: &[&Sample]) -> Result<Vec<Sample>> {
     let character = setup.character()?;
     let bind: Vec<DAffine3> = character.joints.iter().map(|joint| joint.inverse_bind.inverse()).collect();
     let mirror = DAffine3 {
-        matrix3: DMat3::from_diagonal(DVec3::new(-1.0, 1.0, 1.0)).into(),
-        translation: DVec3::new(2.0 * bind[character.root].translation.x, 0.0, 0.0).into(),
+        matrix3: DMat3::from_diagonal(DVec3::new(-1.0, 1.0, 1.0)),
+        translation: DVec3::new(2.0 * bind[character.root].translation.x, 0.0, 0.0),
     };
     let image = |points: &[DVec3]| points.iter().map(|p| mirror.transform_point3(*p)).collect::<Vec<_>>();
     let cloth = setup.cloth();
@@ -56,7 +56,7 @@ pub fn mirrored(setup: &Setup, samples: &[&Sample]) -> Result<Vec<Sample>> {
 
 /// Which joint each is the image of: itself in the plane, else the nearest one with the same ancestors, in the mirror.
 fn counterparts(character: &Character, bind: &[DAffine3], mirror: DAffine3) -> Option<Vec<usize>> {
-    let place: Vec<DVec3> = bind.iter().map(|bind| bind.translation.into()).collect();
+    let place: Vec<DVec3> = bind.iter().map(|bind| bind.translation).collect();
     let furthest = ASKEW * character.body.mesh.extent();
     let mut found: Vec<usize> = Vec::new();
     for (joint, at) in place.iter().map(|place| mirror.transform_point3(*place)).enumerate() {
