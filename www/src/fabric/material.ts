@@ -39,11 +39,11 @@ export class FabricMaterial extends MeshPhysicalMaterial {
     const { relief, tile, sheenTint, ...rest } = fabrics[look.fabric];
     this.roughness = rest.roughness;
     this.specularIntensity = rest.gloss;
-    this.specularColor = new Color('#fff').lerp(new Color(look.colour), rest.glossTint);
+    this.specularColor = tinted(look.colour, rest.glossTint);
     this.anisotropy = rest.grain;
     this.sheen = rest.sheen;
     this.sheenRoughness = rest.sheenRoughness;
-    this.sheenColor = new Color('#fff').lerp(new Color(look.colour), sheenTint);
+    this.sheenColor = tinted(look.colour, sheenTint);
     const { normals, hollows } = weaveOf(look.fabric);
     this.normalMap?.dispose();
     this.aoMap?.dispose();
@@ -78,6 +78,9 @@ export class FabricMaterial extends MeshPhysicalMaterial {
     super.dispose();
   }
 }
+
+/** White, with that share of a colour. */
+const tinted = (colour: string, share: number) => new Color('#fff').lerp(new Color(colour), share);
 
 /** Metres of cloth per unit of texture coordinate: the root of cloth area over texture area. */
 function metresPerUnit(geometry: BufferGeometry): number {

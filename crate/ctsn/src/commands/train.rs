@@ -11,13 +11,13 @@ use std::path::{Path, PathBuf};
 
 /// Train the network on a dataset: on all clips but the last tenth (with fewer than ten: on the first 90 % of each)
 ///
-/// Mixed poses of the dataset are used too, and of symmetric characters in symmetric garments every pose a second time,
-/// seen in a mirror. On a character with limbs, more poses are mixed during training, without
-/// simulation: cloth learns from them to stay outside the body. A tenth of the frames is held back and predicted after
-/// every epoch: the model with the least error on them is kept. The learning curve is written beside the model
-/// (MODEL.curve.csv). A checkpoint is written every few epochs; interrupted training continues from it, with the same
-/// result. A model that the same training has made already is left as it is. Asked for with another --storage, it is
-/// stored anew from what was learned (MODEL.f32.safetensors), without training.
+/// Mixed poses of the dataset are used too, and of symmetric characters in symmetric garments every pose a second
+/// time, seen in a mirror. On a character with limbs, more poses are mixed during training, without simulation: cloth
+/// learns from them to stay outside the body. A tenth of the frames is held back and predicted after every epoch: the
+/// model with the least error on them is kept. The learning curve is written beside the model (MODEL.curve.csv). A
+/// checkpoint is written every few epochs; interrupted training continues from it, with the same result. A model that
+/// the same training has made already is left as it is. Asked for with another --storage, it is stored anew from what
+/// was learned (MODEL.f32.safetensors), without training.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// Dataset folder, as `ctsn simulate` leaves it; with --self-supervised, the character (glTF)
