@@ -11,7 +11,7 @@ const differ = (a, b) => a.reduce((most, value, i) => Math.max(most, Math.abs(va
 /** What the engine has of what the package can use, and which modules it fetched. */
 export async function describe() {
   const answer = { isolated: crossOriginIsolated, sharedMemory: typeof SharedArrayBuffer === 'function' };
-  answer.adapter = Boolean(await navigator.gpu?.requestAdapter());
+  answer.adapter = Boolean(await navigator.gpu?.requestAdapter().catch(() => null));
   const { relaxedSimd } = await import('/dist/raw.js');
   answer.relaxedSimd = relaxedSimd();
   const names = performance.getEntriesByType('resource').map(({ name }) => name.split('/').at(-1));

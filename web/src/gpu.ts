@@ -16,7 +16,11 @@ export function ownDevice(): Promise<GPUDevice> {
 async function request(): Promise<GPUDevice> {
   const gpu = (globalThis.navigator as Navigator | undefined)?.gpu as GPU | undefined;
   if (!gpu) throw new CtsnError('no_adapter', 'this browser, or this page, has no WebGPU');
-  const adapter = await gpu.requestAdapter({ powerPreference: 'high-performance' });
+  const wanted = { powerPreference: 'high-performance' } as const;
+  // Firefox 140 has the interface and refuses to use it, where others answer null.
+  const adapter = await gpu.requestAdapter(wanted).catch((cause: unknown) => {
+    throw new CtsnError('no_adapter', `this browser gives no adapter: ${String(cause)}`, { cause });
+  });
   if (!adapter) throw new CtsnError('no_adapter', 'WebGPU finds no adapter on this machine');
   const { maxBufferSize, maxStorageBufferBindingSize } = adapter.limits;
   // WebGPU's defaults are enough for everything but the weights of large models.

@@ -130,8 +130,8 @@ interface FakeGpu {
 /** The browser's `navigator`, whose adapter hands out new devices: `devices`, in their order. */
 export class FakeNavigator {
   readonly devices: FakeDevice[] = [];
-  /** Whether there is an adapter. */
-  adapter = true;
+  /** Whether there is an adapter, or why asking for one is refused. */
+  adapter: boolean | Error = true;
 
   // On the prototype, as in a browser, where an own property hides it for a moment.
   get gpu(): FakeGpu {
@@ -141,6 +141,10 @@ export class FakeNavigator {
       return Promise.resolve(device);
     };
     const adapter = { limits: {}, info: {}, requestDevice };
-    return { wgslLanguageFeatures: new Set(), requestAdapter: () => Promise.resolve(this.adapter ? adapter : null) };
+    const requestAdapter = async () => {
+      if (this.adapter instanceof Error) throw this.adapter;
+      return this.adapter ? adapter : null;
+    };
+    return { wgslLanguageFeatures: new Set(), requestAdapter };
   }
 }

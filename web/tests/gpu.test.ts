@@ -49,6 +49,14 @@ test("WebGPU's module is started for a device, and never without one", async () 
   for (const model of [cpu, auto, webgpu]) model.dispose();
 });
 
+test('a browser that has the interface and refuses to use it, as Firefox 140, is one without an adapter', async () => {
+  browser.adapter = new Error('not yet available');
+  const model = await load();
+  expect(model.backend).toBe('cpu');
+  expect(model.fallback).toContain('gives no adapter: Error: not yet available');
+  model.dispose();
+});
+
 test('a model that goes to a GPU later needs the bytes of its caller no more', async () => {
   const bytes = Buffer.from(bytesOf('tiny'));
   const model = await loadModel(bytes, { backend: 'cpu' } as GpuLoadOptions);

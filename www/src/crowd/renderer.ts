@@ -6,7 +6,7 @@ import type { WebGPURenderer } from 'three/webgpu';
  * where `wanted` is `webgl`, on WebGL. What computes WebGPU on the processor counts only where it is `wanted`.
  */
 export async function createRenderer(canvas: HTMLCanvasElement, wanted: string | null): Promise<WebGLRenderer | WebGPURenderer> {
-  const adapter = wanted === 'webgl' ? null : await navigator.gpu?.requestAdapter();
+  const adapter = wanted === 'webgl' ? null : await navigator.gpu?.requestAdapter().catch(() => null);
   const look = { canvas, antialias: true, alpha: true };
   if (!adapter || (adapter.info.isFallbackAdapter && wanted !== 'webgpu')) return new WebGLRenderer(look);
   const { WebGPURenderer } = await import('three/webgpu');
