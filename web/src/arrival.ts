@@ -35,7 +35,7 @@ class Arrival {
   }
 
   /** The file [bytes]; `keep` it for the next who wants it. When the last who waits gives up, so does the request. */
-  async wait(keep: boolean, { onProgress, onPart, signal }: PartsOptions): Promise<Uint8Array> {
+  async wait(keep: boolean, { onProgress, onPart, signal }: PartsOptions, check?: (file: Uint8Array) => void): Promise<Uint8Array> {
     this.#waiting++;
     // An object of its own: one function may listen for several loads.
     const listener = { onProgress, onPart };
@@ -43,6 +43,7 @@ class Arrival {
     if (onPart) this.#parts.forEach(onPart);
     try {
       const bytes = await until(signal, this.#bytes);
+      check?.(bytes);
       this.#kept = keep;
       return bytes;
     } finally {
@@ -70,10 +71,10 @@ export async function fetchFile(source: string | URL, options: PartsOptions): Pr
   return download(source, signal ? { ...options, request: { ...request, signal } } : options);
 }
 
-/** Fetches a file ahead. It is kept until somebody wants it. */
-export async function fetchAhead(source: string | URL, options: PartsOptions): Promise<void> {
+/** Fetches a file ahead. It is kept until somebody wants it, unless `check` throws. */
+export async function fetchAhead(source: string | URL, options: PartsOptions, check: (file: Uint8Array) => void): Promise<void> {
   options.signal?.throwIfAborted();
-  await Arrival.of(String(source), options.cache).wait(true, options);
+  await Arrival.of(String(source), options.cache).wait(true, options, check);
 }
 
 /** What comes of `work`, or the reason of `signal` where that is aborted first. */

@@ -119,7 +119,7 @@ function follow(signals: (AbortSignal | null | undefined)[]): { end: AbortContro
  */
 export async function preload(source: string | URL, options: LoadOptions = {}): Promise<void> {
   const engine = startEngine(countThreads(options.threads), options);
-  await until(options.signal, Promise.all([engine, fetchAhead(source, options)]));
+  await until(options.signal, Promise.all([engine, fetchAhead(source, options, (file) => void recognise(file, String(source)))]));
 }
 
 /**

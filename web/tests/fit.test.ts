@@ -108,7 +108,7 @@ test('wrong arguments are told apart, by what was wanted and found', () => {
   const make = Cloth as unknown as new (...list: unknown[]) => Cloth;
   const refusal = (text: RegExp) => expect.objectContaining({ code: 'argument', message: expect.stringMatching(text) as string }) as Error;
   expect(() => new make(character, model, material)).toThrow(refusal(/model wants what loadModel answers, found Group/));
-  expect(() => new make(model, { scene: character }, material)).toThrow(refusal(/character wants .*gltf.scene.* found Object/));
+  expect(() => new make(model, { scene: character }, material)).toThrow(refusal(/character wants .*gltf.scene.* found \{ scene \}/));
   expect(() => new make(model, character)).toThrow(refusal(/material wants a Material, found undefined/));
   expect(() => new make(model, character, material, { render: () => 0 })).toThrow(refusal(/options wants { renderer, bones, fit }/));
 });

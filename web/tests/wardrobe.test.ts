@@ -1,25 +1,10 @@
 // A wardrobe changes what its character wears, without a bare frame and without growing.
-import {
-  BufferGeometry,
-  Float32BufferAttribute,
-  Matrix4,
-  MeshBasicMaterial,
-  OrthographicCamera,
-  PerspectiveCamera,
-  SkinnedMesh,
-  Uint16BufferAttribute,
-  Vector3,
-  type Bone,
-  type Camera,
-  type Group,
-  type Scene,
-  type WebGLRenderer,
-} from 'three';
+import { MeshBasicMaterial, OrthographicCamera, PerspectiveCamera, Vector3, type Bone, type Camera, type Group, type Scene, type WebGLRenderer } from 'three';
 import { afterEach, beforeEach, expect, test, vi } from 'vitest';
 import { CtsnError, loadModel, type ModelSource } from 'ctsn';
-import { coveredSkin, Wardrobe, type WardrobeOptions, type WearOptions } from 'ctsn/three';
+import { Wardrobe, type WardrobeOptions, type WearOptions } from 'ctsn/three';
 import { collectGarbage } from './allocation.js';
-import { characterOf, skeletonOf } from './character.js';
+import { characterOf } from './character.js';
 import { bytesOf, loadGolden } from './golden.js';
 
 const material = new MeshBasicMaterial({ opacity: 0.8 });
@@ -114,6 +99,34 @@ test('what is no name of a garment is refused', async () => {
   expect(wardrobe.worn).toEqual(['shirt']);
 });
 
+test('what a wardrobe is made of is looked at when it is made, and told by what was wanted and found', async () => {
+  const { character } = await wardrobeOf();
+  const make = (who: unknown, options: unknown) => () => new Wardrobe(who as Group, sources, options as WardrobeOptions<'shirt' | 'dress' | 'trousers'>);
+  const refused = (text: RegExp) => expect.objectContaining({ code: 'argument', message: expect.stringMatching(text) as string }) as Error;
+  expect(make(undefined, { material })).toThrow(refused(/^new Wardrobe\(.*character wants an Object3D.*gltf\.scene.*found undefined$/));
+  expect(make({ scene: character, animations: [] }, { material })).toThrow(refused(/character wants .*found { scene, animations }$/));
+  expect(make(character, { material: { shirt: material } })).toThrow(refused(/options\.material wants .*\(name\) => materials\[name\], found { shirt }$/));
+  expect(make(character, undefined)).toThrow(refused(/options\.material wants .*found undefined$/));
+});
+
+test('several garments are a list: a second name in place of options is refused', async () => {
+  const { wardrobe } = await wardrobeOf();
+  await expect(wardrobe.wear('shirt', 'trousers' as never)).rejects.toThrow(/options wants .*wear\(\['trousers', 'tshirt'\]\).*found "trousers"/);
+  expect(wardrobe.worn).toEqual([]);
+});
+
+test('a web page at the address of a garment is refused ahead as it would be when worn', async () => {
+  vi.stubGlobal('fetch', () => Promise.resolve(new Response('<!doctype html>')));
+  try {
+    const { wardrobe } = await wardrobeOf({}, { shirt: 'https://shop.test/shrit' });
+    const refused = { code: 'not_safetensors', message: expect.stringMatching(/^garment "shirt": .*found a web page/) as string };
+    await expect(wardrobe.prefetch('shirt')).rejects.toMatchObject(refused);
+    await expect(wardrobe.wear('shirt')).rejects.toMatchObject(refused);
+  } finally {
+    vi.unstubAllGlobals();
+  }
+});
+
 test('several garments at once; who changes her mind finds what was on its way off', async () => {
   const { wardrobe } = await wardrobeOf({ fade: 1 });
   await wardrobe.wear(['shirt', 'trousers']);
@@ -184,76 +197,9 @@ test('what is refused names the garment, and what was worn stays', async () => {
   await expect(wardrobe.wear('gone')).rejects.toMatchObject(refused('fetch', 'garment "gone": '));
   await expect(wardrobe.prefetch('gone')).rejects.toMatchObject(refused('fetch', 'garment "gone": '));
   await expect(wardrobe.wear('hat')).rejects.toMatchObject(refused('argument', '"hat"; its garments are "shirt"'));
-  expect(() => new Wardrobe(character, sources, undefined as never)).toThrow('options wants { material }');
   (character.children[1] as Bone).name = 'other';
   await expect(wardrobe.wear('dress')).rejects.toMatchObject({ ...refused('missing_joint', 'garment "dress"'), joint: expect.any(String) as string });
   expect(wardrobe.worn).toEqual(['shirt']);
-});
-
-/** A skin of one triangle per entry: under the cloth, or far from it. */
-async function skinned(character: Group): Promise<SkinnedMesh> {
-  const { model } = await loadGolden('small');
-  const geometry = new BufferGeometry();
-  geometry.setAttribute('position', new Float32BufferAttribute(new Array(18).fill(0), 3));
-  geometry.setAttribute('normal', new Float32BufferAttribute(new Array(18).fill(0), 3));
-  geometry.setIndex([0, 1, 2, 3, 4, 5]);
-  geometry.setAttribute('skinIndex', new Uint16BufferAttribute(new Array(24).fill(0), 4));
-  geometry.setAttribute('skinWeight', new Float32BufferAttribute(new Array(24).fill(0.25), 4));
-  const mesh = new SkinnedMesh(geometry, material);
-  mesh.bind(skeletonOf(model, character.children as Bone[]), new Matrix4());
-  character.add(mesh);
-  return mesh;
-}
-
-test('covered skin is not drawn while the garment is worn, and shown again after', async () => {
-  const { model, character } = await wardrobeOf();
-  const mesh = await skinned(character);
-  const before = mesh.geometry;
-  const covered = () => Uint8Array.from([1, 1, 1, 1, 0, 1]);
-  const wardrobe = new Wardrobe(character, sources, { material, covered, fade: 1 });
-  const drawn = () => [...mesh.geometry.index!.array.slice(0, mesh.geometry.drawRange.count)];
-  await wardrobe.wear('shirt');
-  pass(wardrobe, 0);
-  expect(drawn()).toEqual([3, 4, 5]);
-  // Others who have the same geometry keep theirs.
-  expect([...before.index!.array, before.drawRange.count]).toEqual([0, 1, 2, 3, 4, 5, Infinity]);
-  await wardrobe.wear([]);
-  pass(wardrobe, 0.1);
-  expect(drawn()).toEqual([0, 1, 2, 3, 4, 5]);
-  wardrobe.dispose();
-  expect(mesh.geometry).toBe(before);
-  model.dispose();
-});
-
-test('skin with cloth before it is covered, but not near a hem, nor what looks away, nor what is far', async () => {
-  const { wardrobe, character, model } = await wardrobeOf();
-  const mesh = await skinned(character);
-  await wardrobe.wear('shirt');
-  const rest = mesh.skeleton.boneInverses.map((inverse) => inverse.clone().invert());
-  const { positions, normals } = model.predictCloth(rest, { quality: 'skinned' });
-  const place = (vertex: number, under: number, way: number) => {
-    const at = [0, 1, 2].map((axis) => positions[3 * vertex + axis]! - under * normals[3 * vertex + axis]!);
-    const out = [0, 1, 2].map((axis) => way * normals[3 * vertex + axis]!);
-    return { at, out };
-  };
-  // Where the cloth is widest from its hems some vertex is covered; none is by cloth that is a metre away.
-  const marks: number[][] = [];
-  for (let vertex = 0; vertex < model.vertexCount; vertex++) {
-    const all = [place(vertex, 0.01, 1), place(vertex, 0.01, -1), place(vertex, 1, 1)];
-    const { position, normal } = mesh.geometry.attributes;
-    all.forEach(({ at, out }, i) => {
-      position!.setXYZ(i, at[0]!, at[1]!, at[2]!);
-      normal!.setXYZ(i, out[0]!, out[1]!, out[2]!);
-    });
-    marks.push([...(await coveredSkin(wardrobe.cloth('shirt')!, mesh)).slice(0, 3)]);
-  }
-  const count = (i: number) => marks.filter((mark) => mark[i] === 1).length;
-  console.log(`covered of ${marks.length}: under ${count(0)}, looking away ${count(1)}, far ${count(2)}`);
-  expect(count(0)).toBeGreaterThan(0);
-  expect(count(0)).toBeLessThan(marks.length);
-  expect([count(1), count(2)]).toEqual([0, 0]);
-  model.dispose();
-  wardrobe.dispose();
 });
 
 test('200 changes leave the memory of the module, the heap and the geometries as they were', async () => {

@@ -1,14 +1,19 @@
 import { Material } from 'three';
 import type { Cloth } from './cloth.js';
 import type { AnyClothModel } from './options.js';
+import type { Rest } from './rest.js';
 
 /** One garment on a character, as much as is seen of it. */
 export class Garment {
   readonly cloth: Cloth<Material, AnyClothModel>;
+  /** How it lies in the bind pose; there before it is shown. */
+  rest!: Rest;
   /** Whether it is to be worn, or on its way off. */
   wanted = true;
   /** How opaque it is: 0 to 1. */
   share = 0;
+  /** How many garments are below it. */
+  depth = 0;
   /** The page's material, and one like it that may be transparent: the page's may be on other garments too. */
   #own: Material | undefined;
   #ghost: Material | undefined;

@@ -6,8 +6,10 @@ import type { Character } from './bones.js';
 import { Cloth } from './cloth.js';
 import { Garment } from './garment.js';
 import { drawNearer } from './layer.js';
-import type { AnyClothModel, ClothOptions } from './options.js';
+import { checkCharacter, is, refusal, type AnyClothModel, type ClothOptions } from './options.js';
+import { restOf } from './rest.js';
 import { Skin } from './skin.js';
+import { Tuck } from './tuck.js';
 
 /** What wardrobes hand to whatever loads their models. */
 export type WearOptions = Pick<LoadOptions, 'signal' | 'onProgress'>;
@@ -21,8 +23,8 @@ export interface WardrobeOptions<Name extends string = string> extends ClothOpti
   /** Seconds that a change takes; 0: none. A third of a second if not given. */
   fade?: number | undefined;
   /**
-   * Metres by which a garment is drawn nearer to the camera than the one below it, since neither knows of the other;
-   * 0: none. 0.025 if not given.
+   * Metres by which a garment is drawn nearer to the camera than the one below it; 0: none. 0.025 if not given. The one
+   * below is put under it vertex by vertex, but faces may cross; and not where the renderer draws from a GPU's buffers.
    */
   layer?: number | undefined;
   /**
@@ -48,6 +50,8 @@ export class Wardrobe<Name extends string = string> extends Group {
   readonly #skin: Skin;
   /** What is on the character: worn, or on its way off. The innermost first. */
   readonly #garments = new Map<string, Garment>();
+  /** Every two of them; those that the outermost covers first. */
+  #tucks: readonly Tuck[] = [];
   /** What the last call asked for: none of that is let go of while the rest comes. */
   #wanted: readonly string[] = [];
   #call = new AbortController();
@@ -57,8 +61,12 @@ export class Wardrobe<Name extends string = string> extends Group {
   /** `garments`: model files of this character, by name. Nothing is loaded before it is worn. */
   constructor(character: Character, garments: Readonly<Record<Name, ModelSource>>, options: WardrobeOptions<Name>) {
     super();
+    checkCharacter(character, refuse);
     if (!(garments instanceof Object)) throw refuse('garments', 'model files by name, { tshirt: url }', garments);
-    if (!(options instanceof Object) || !options.material) throw refuse('options', '{ material }', options);
+    const { material } = options ?? {};
+    if (typeof material !== 'function' && !is(material, 'isMaterial')) {
+      throw refuse('options.material', 'a Material, or a function such as (name) => materials[name]', material);
+    }
     this.#character = character;
     this.#sources = new Map(Object.entries(garments));
     this.#options = options;
@@ -70,18 +78,18 @@ export class Wardrobe<Name extends string = string> extends Group {
     return [...this.#sources.keys()] as Name[];
   }
 
-  /** Names of what is worn, in the order in which it was put on. */
+  /** Names of what is worn, the innermost first. */
   get worn(): readonly Name[] {
     return [...this.#garments].filter(([, { wanted }]) => wanted).map(([name]) => name as Name);
   }
 
-  /** The cloth of a garment that is worn. */
+  /** The cloth of a garment that is worn. While it comes, its material is a transparent copy of the page's. */
   cloth(garment: Name): Cloth<Material, AnyClothModel> | undefined {
     const found = this.#garments.get(garment);
     return found?.wanted ? found.cloth : undefined;
   }
 
-  /** Has one garment more, or another model for one that is not worn. */
+  /** Has one garment more, or another model for one; what is worn keeps its own until it has been taken off. */
   stock<More extends string>(garment: More | Name, source: ModelSource): Wardrobe<Name | More> {
     this.#sources.set(garment, source);
     return this as unknown as Wardrobe<Name | More>;
@@ -97,12 +105,17 @@ export class Wardrobe<Name extends string = string> extends Group {
   /**
    * Wears these garments, the innermost first, and these alone: one, several, or none. What was worn stays until all
    * are there. Answers true once they are worn; false if another call has overtaken this one. Where one of them is
-   * refused, what was worn stays, and the error names the garment.
+   * refused, none of them is put on, what was worn stays, and the error names the garment.
    */
-  async wear(garments: Name | readonly Name[], { signal, onProgress }: WearOptions = {}): Promise<boolean> {
+  async wear(garments: Name | readonly Name[], options: WearOptions = {}): Promise<boolean> {
+    const wrong = refusal('wear(garments, options)');
     if (typeof garments !== 'string' && !Array.isArray(garments)) {
-      throw new CtsnError('argument', `wear wants the name of a garment or a list of names, found ${String(garments)}`);
+      throw wrong('garments', "a garment's name or a list of names, wear(['trousers', 'tshirt']),", garments);
     }
+    if (!(options instanceof Object)) {
+      throw wrong('options', "{ signal, onProgress }, after a list where there are several garments, wear(['trousers', 'tshirt']),", options);
+    }
+    const { signal, onProgress } = options;
     const names = [...new Set<string>(typeof garments === 'string' ? [garments] : garments)];
     names.forEach((name) => this.#source(name));
     if (this.#disposed) throw new CtsnError('disposed', 'the wardrobe was used after dispose()');
@@ -138,6 +151,7 @@ export class Wardrobe<Name extends string = string> extends Group {
       cloth.quality = this.quality;
       cloth.update();
     }
+    for (const tuck of this.#tucks) tuck.apply();
     return this;
   }
 
@@ -174,12 +188,13 @@ export class Wardrobe<Name extends string = string> extends Group {
         options.signal?.throwIfAborted();
         const made = typeof material === 'function' ? material(name as Name) : material;
         const cloth = new Cloth<Material, AnyClothModel>(model, this.#character, made, this.#options);
-        drawNearer(cloth, () => (this.#options.layer ?? 0.025) * Math.max(this.#wanted.indexOf(name), 0));
-        garment = new Garment(cloth);
+        const opened = (garment = new Garment(cloth));
+        drawNearer(cloth, () => (this.#options.layer ?? 0.025) * opened.depth);
       } catch (error) {
         model.dispose();
         throw error;
       }
+      garment.rest = await restOf(garment.cloth.model);
       // A model in a worker, or on a GPU whose answers come late, has shown nothing yet.
       await garment.cloth.settled();
       await this.#skin.cover(garment, this.#options.covered);
@@ -205,10 +220,24 @@ export class Wardrobe<Name extends string = string> extends Group {
       cloth.quality = this.quality;
       if (cloth.parent !== this) this.add(cloth.update());
     }
+    const all = new Map(this.#garments);
+    this.#garments.clear();
+    for (const name of stack([...all.keys()], names)) this.#garments.set(name, all.get(name)!);
+    this.#arrange();
     this.#fade(0);
   }
 
-  /** New garments come to stand before the old ones, which go when the new hide them: nobody is ever bare. */
+  /** Has each garment know which are below it. */
+  #arrange(): void {
+    const before = this.#tucks;
+    const all = [...this.#garments.values()];
+    all.forEach((garment, depth) => (garment.depth = depth));
+    const known = (inner: Garment, outer: Garment) => before.find((tuck) => tuck.inner === inner && tuck.outer === outer);
+    const under = (outer: Garment) => all.slice(0, outer.depth).map((inner) => known(inner, outer) ?? new Tuck(inner, outer));
+    this.#tucks = [...all].reverse().flatMap(under);
+  }
+
+  /** New garments come into sight over the old ones, which go when the new hide them: nobody is ever bare. */
   #fade(seconds: number): void {
     const { fade = 1 / 3 } = this.#options;
     // Half of the time for either way.
@@ -229,13 +258,24 @@ export class Wardrobe<Name extends string = string> extends Group {
     this.#garments.delete(name);
     this.remove(garment.cloth);
     garment.dispose();
+    this.#arrange();
   }
+}
+
+/** An order for what is wanted and what is still on: what goes stays over what it was over, and under what comes. */
+function stack(before: readonly string[], wanted: readonly string[]): string[] {
+  const order = [...wanted];
+  let at = 0;
+  for (const name of before) {
+    if (wanted.includes(name)) at = order.indexOf(name) + 1;
+    else order.splice(at++, 0, name);
+  }
+  return order;
 }
 
 const openModel = (source: ModelSource, options: WearOptions): Promise<AnyClothModel> => loadModel(source, options);
 
-const refuse = (what: string, wanted: string, found: unknown) =>
-  new CtsnError('argument', `new Wardrobe(character, garments, options): ${what} wants ${wanted}, found ${String(found)}`);
+const refuse = refusal('new Wardrobe(character, garments, options)');
 
 /** Throws an error again, with the garment's name. */
 const named =

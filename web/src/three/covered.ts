@@ -1,0 +1,86 @@
+import { Vector3, type BufferAttribute, type Material, type Matrix4, type SkinnedMesh } from 'three';
+import { Cells } from './cells.js';
+import type { Cloth } from './cloth.js';
+import type { AnyClothModel } from './options.js';
+import { edgesOf, restOf, trained } from './rest.js';
+
+/** Cloth so far before the skin still covers it, metres: loose trousers have as much room. */
+const REACH = 0.08;
+/** But not cloth that is so far beside it: what hangs before the one leg is beside the inner side of the other. */
+const BESIDE = 0.04;
+/** Skin so near a hem, or so near bare skin, may show when it moves, metres: raised arms lift a shirt that far. */
+const MARGIN = 0.2;
+
+/**
+ * Which vertices of `mesh` a garment covers, as both stand in the bind pose: those that have cloth a few centimetres
+ * before them, and neither a hem nor bare skin within a hand's length. So what is in a tube of cloth is covered, as a
+ * leg in trousers; a leg in a skirt is not, whose inner side is bare: a knee that is raised comes out of the skirt, and
+ * there would be a hole in it. 1 for each of those [vertices of mesh].
+ */
+export async function coveredSkin({ model, bones }: Cloth<Material, AnyClothModel>, mesh: SkinnedMesh): Promise<Uint8Array> {
+  const { position, normal } = mesh.geometry.attributes as Record<string, BufferAttribute>;
+  const covered = new Uint8Array(position!.count);
+  const toModel = bindSpace(model, bones, mesh);
+  if (!toModel || !normal) return covered;
+  const { positions } = await restOf(model);
+  const inside = insideOf(model, positions);
+  const cloth = new Cells(REACH);
+  const bare = new Cells(MARGIN);
+  const [at, out, way] = [new Vector3(), new Vector3(), new Vector3()];
+  inside.forEach((_, vertex) => cloth.add(at.fromArray(positions, 3 * vertex), vertex));
+  const place = (vertex: number) => at.fromBufferAttribute(position!, vertex).applyMatrix4(toModel);
+  for (let vertex = 0; vertex < covered.length; vertex++) {
+    place(vertex);
+    out.fromBufferAttribute(normal, vertex).transformDirection(toModel);
+    let [nearest, before] = [REACH, false];
+    for (const other of cloth.near(at)) {
+      const far = way.fromArray(positions, 3 * other).sub(at).length();
+      if (far >= nearest) continue;
+      nearest = far;
+      const ahead = way.dot(out);
+      before = ahead > 0 && Math.sqrt(far * far - ahead * ahead) < BESIDE;
+      covered[vertex] = before && inside[other]! > MARGIN ? 1 : 0;
+    }
+    if (!before) bare.add(at, vertex);
+  }
+  const seen = new Vector3();
+  return covered.map((mark, vertex) => {
+    if (mark === 0) return 0;
+    place(vertex);
+    for (const other of bare.near(at)) {
+      if (seen.fromBufferAttribute(position!, other).applyMatrix4(toModel).distanceTo(at) < MARGIN) return 0;
+    }
+    return 1;
+  });
+}
+
+/** What takes a mesh as it was bound to where the model has it; nothing where they have no joint in common. */
+function bindSpace(model: AnyClothModel, bones: Cloth['bones'], mesh: SkinnedMesh): Matrix4 | undefined {
+  const { bones: bound, boneInverses } = mesh.skeleton;
+  const joint = bones.findIndex((bone) => (bound as unknown[]).includes(bone));
+  if (joint < 0) return undefined;
+  const inverse = boneInverses[(bound as unknown[]).indexOf(bones[joint])]!;
+  return trained(model, joint).invert().multiply(inverse).multiply(mesh.bindMatrix);
+}
+
+/** How far each vertex of the cloth is from its nearest hem, along edges [n]; metres. */
+function insideOf(model: AnyClothModel, rest: Float32Array): Float32Array {
+  const inside = new Float32Array(model.vertexCount).fill(Infinity);
+  const all = edgesOf(model).map(({ a, b, hem }) => {
+    if (hem) inside[a] = inside[b] = 0;
+    return { a, b, far: Math.hypot(...[0, 1, 2].map((axis) => rest[3 * a + axis]! - rest[3 * b + axis]!)) };
+  });
+  // A mesh without a rim is a shell around the cloth's edges, too: nothing says where those are.
+  if (!inside.includes(0)) inside.fill(0);
+  for (let changed = true; changed; ) {
+    changed = false;
+    for (const { a, b, far } of all) {
+      const [near, other] = inside[a]! < inside[b]! ? [a, b] : [b, a];
+      // Beyond the margin it matters no more how far.
+      if (inside[near]! > MARGIN || !(inside[near]! + far < inside[other]! - 1e-6)) continue;
+      inside[other] = inside[near]! + far;
+      changed = true;
+    }
+  }
+  return inside;
+}

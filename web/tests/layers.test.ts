@@ -1,0 +1,78 @@
+// Garments over one another: the inner under the outer, and what comes over what goes.
+import { MeshBasicMaterial, type BufferAttribute } from 'three';
+import { afterEach, beforeEach, expect, test, vi } from 'vitest';
+import { Wardrobe } from 'ctsn/three';
+import { characterOf } from './character.js';
+import { bytesOf, loadGolden } from './golden.js';
+
+const names = ['shirt', 'dress', 'trousers'] as const;
+type Name = (typeof names)[number];
+type Drawn = Record<Name, { position: ArrayLike<number>; normal: ArrayLike<number> }>;
+let now = 0;
+beforeEach(() => void vi.spyOn(performance, 'now').mockImplementation(() => now));
+afterEach(() => void vi.restoreAllMocks());
+
+/** A wardrobe in which all is of one form: of two that are worn the inner lies in the outer. */
+async function wardrobeOf() {
+  const { model, poses } = await loadGolden('small');
+  const material = new MeshBasicMaterial();
+  const garments = Object.fromEntries(names.map((name) => [name, bytesOf('small')])) as Record<Name, Uint8Array>;
+  return new Wardrobe(characterOf(model.joints, poses[0]!), garments, { material, fade: 1 });
+}
+
+/** Goes on by so many seconds; answers with the arrays of each garment's geometry that is drawn. */
+function pass(wardrobe: Wardrobe<Name>, seconds: number) {
+  now += 1000 * seconds;
+  wardrobe.update();
+  return Object.fromEntries(
+    wardrobe.children.map((cloth) => {
+      const { position, normal } = (cloth as NonNullable<ReturnType<typeof wardrobe.cloth>>).geometry.attributes as Record<string, BufferAttribute>;
+      return [cloth.name, { position: position!.array, normal: normal!.array }];
+    }),
+  ) as Partial<Drawn> as Drawn;
+}
+
+/** By how much the vertices of one are under those of another, millimetres: the least and the most. */
+function under(inner: { position: ArrayLike<number> }, outer: { position: ArrayLike<number>; normal: ArrayLike<number> }) {
+  const deep = Array.from({ length: outer.position.length / 3 }, (_, vertex) =>
+    [0, 1, 2].map((axis) => 3 * vertex + axis).reduce((sum, i) => sum + (outer.position[i]! - inner.position[i]!) * outer.normal[i]!, 0),
+  );
+  return [Math.min(...deep), Math.max(...deep)].map((metres) => Math.round(1e4 * metres) / 10);
+}
+
+test('the inner garment is drawn under the outer one, which stays; worn alone it is as it was', async () => {
+  const wardrobe = await wardrobeOf();
+  await wardrobe.wear('trousers');
+  const alone = Array.from(pass(wardrobe, 1).trousers.position);
+  await wardrobe.wear(['trousers', 'shirt']);
+  const { trousers, shirt } = pass(wardrobe, 1);
+  expect(under(trousers, shirt)).toEqual([6, 6]);
+  expect(Array.from(shirt.position)).toEqual(alone);
+  await wardrobe.wear('trousers');
+  pass(wardrobe, 1);
+  expect(Array.from(pass(wardrobe, 0).trousers.position)).toEqual(alone);
+});
+
+test('the order is that of the last call, whatever was put on first', async () => {
+  const wardrobe = await wardrobeOf();
+  await wardrobe.wear('shirt');
+  await wardrobe.wear(['trousers', 'shirt']);
+  expect(wardrobe.worn).toEqual(['trousers', 'shirt']);
+  const inside = pass(wardrobe, 1);
+  expect(under(inside.trousers, inside.shirt)).toEqual([6, 6]);
+  await wardrobe.wear(['shirt', 'trousers']);
+  const tucked = pass(wardrobe, 1);
+  expect(under(tucked.shirt, tucked.trousers)).toEqual([6, 6]);
+});
+
+test('what comes is over what goes, as much as it is there; what goes stays over what it was over', async () => {
+  const wardrobe = await wardrobeOf();
+  await wardrobe.wear(['trousers', 'shirt']);
+  pass(wardrobe, 0);
+  await wardrobe.wear('dress');
+  const half = pass(wardrobe, 0.25);
+  expect(under(half.shirt, half.dress)).toEqual([3, 3]);
+  const all = pass(wardrobe, 0.25);
+  expect(under(all.shirt, all.dress)).toEqual([6, 6]);
+  expect(under(all.trousers, all.shirt)[0]).toBeGreaterThan(0);
+});
