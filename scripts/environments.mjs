@@ -11,9 +11,10 @@ const unaware = readFileSync(at('examples', 'vite', 'main.js'), 'utf8');
 
 /**
  * `folder`: the page, if it is not the one of examples/ that is called as the environment; `packages`: other releases
- * than its package.json names; `files`: texts in place of its own. What is done with it: `dev`: its development server
- * is opened; `build`: it is built and that folder is served; `start`: it is built and started; `node`: it is started
- * and leaves a garment; `types`: its types are checked.
+ * than its package.json names; `files`: texts in place of its own; `garments`: which of andy's it has, and as what, if
+ * not the T-shirt as `model`. What is done with it: `dev`: its development server is opened; `build`: it is built and
+ * that folder is served; `start`: it is built and started; `node`: it is started and leaves a garment; `types`: its
+ * types are checked.
  */
 export const environments = {
   'import-map': { build: '.' },
@@ -29,6 +30,7 @@ export const environments = {
   'esbuild-plain': { folder: 'examples/esbuild', files: { 'main.js': unaware }, build: 'public' },
   next: { dev: true, start: true },
   'react-three-fiber': { dev: true, build: 'dist' },
+  wardrobe: { garments: { tshirt: 'tshirt', trousers: 'trousers', dress: 'dress' }, dev: true, build: 'dist' },
   worker: { dev: true, build: 'dist' },
   'worker-vite-7-told': {
     folder: 'examples/worker',

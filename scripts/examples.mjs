@@ -31,13 +31,14 @@ async function pack() {
 }
 
 /** A copy of an example with all that it needs: its folder. */
-async function install(name, { folder: page = `examples/${name}`, packages = [], files = {} }, tarball) {
+async function install(name, { folder: page = `examples/${name}`, packages = [], files = {}, garments = { tshirt: 'model' } }, tarball) {
   const folder = path.join(scratch, name);
   cpSync(at(page), folder, { recursive: true });
   for (const [file, text] of Object.entries(files)) writeFileSync(path.join(folder, file), text);
-  for (const [from, to] of [['andy.glb', 'character.glb'], ['tshirt.safetensors', 'model.safetensors']]) {
+  const models = Object.entries(garments).map(([garment, as]) => [`andy-${garment}.safetensors`, `${as}.safetensors`]);
+  for (const [from, to] of [['andy.glb', 'character.glb'], ...models]) {
     // Of an import map's page the folder itself is served.
-    cpSync(at('tests', 'data', from), path.join(folder, name === 'import-map' ? '.' : 'public', to));
+    cpSync(at('www', 'public', 'cast', from), path.join(folder, name === 'import-map' ? '.' : 'public', to));
   }
   await npm(folder, 'install', '--no-audit', '--no-fund', '--prefer-offline', tarball, ...packages);
   return folder;

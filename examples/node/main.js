@@ -1,12 +1,13 @@
 // Writes a garment, as it is half a second into a character's first clip, to cloth.obj.
 import { readFile, writeFile } from 'node:fs/promises';
 import { AnimationMixer, PropertyBinding } from 'three';
+import { MeshoptDecoder } from 'three/addons/libs/meshopt_decoder.module.js';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { loadModel } from 'ctsn';
 
 const here = (file) => new URL(file, import.meta.url);
 const { buffer } = new Uint8Array(await readFile(here('public/character.glb')));
-const { scene: character, animations } = await new GLTFLoader().parseAsync(buffer, '');
+const { scene: character, animations } = await new GLTFLoader().setMeshoptDecoder(MeshoptDecoder).parseAsync(buffer, '');
 const model = await loadModel(here('public/model.safetensors'));
 
 const mixer = new AnimationMixer(character);

@@ -3,6 +3,7 @@ import { StrictMode, Suspense, useEffect, useMemo } from 'react';
 import { createRoot } from 'react-dom/client';
 import { Canvas, useFrame, useLoader } from '@react-three/fiber';
 import { AnimationMixer, DoubleSide } from 'three';
+import { MeshoptDecoder } from 'three/addons/libs/meshopt_decoder.module.js';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { Cloth, useClothModel } from 'ctsn/react';
 
@@ -17,7 +18,7 @@ function Character({ scene, animations }) {
 }
 
 function Dressed() {
-  const { scene, animations } = useLoader(GLTFLoader, 'character.glb');
+  const { scene, animations } = useLoader(GLTFLoader, 'character.glb', (loader) => loader.setMeshoptDecoder(MeshoptDecoder));
   const model = useClothModel('model.safetensors');
   return (
     <>

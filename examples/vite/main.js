@@ -9,6 +9,7 @@ import {
   Scene,
   WebGLRenderer,
 } from 'three';
+import { MeshoptDecoder } from 'three/addons/libs/meshopt_decoder.module.js';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { loadModel } from 'ctsn';
 import { Cloth } from 'ctsn/three';
@@ -25,7 +26,7 @@ camera.position.set(0, 1, 4);
 
 async function start() {
   const [{ scene: character, animations }, model] = await Promise.all([
-    new GLTFLoader().loadAsync('character.glb'),
+    new GLTFLoader().setMeshoptDecoder(MeshoptDecoder).loadAsync('character.glb'),
     loadModel('model.safetensors'),
   ]);
   const cloth = new Cloth(model, character, new MeshStandardMaterial({ color: 'steelblue', side: DoubleSide }));

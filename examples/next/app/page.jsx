@@ -12,6 +12,7 @@ import {
   Scene,
   WebGLRenderer,
 } from 'three';
+import { MeshoptDecoder } from 'three/addons/libs/meshopt_decoder.module.js';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { loadModel } from 'ctsn';
 import { Cloth } from 'ctsn/three';
@@ -28,7 +29,7 @@ export default function Page() {
 
 async function show(container, end) {
   const [{ scene: character, animations }, model] = await Promise.all([
-    new GLTFLoader().loadAsync('character.glb'),
+    new GLTFLoader().setMeshoptDecoder(MeshoptDecoder).loadAsync('character.glb'),
     loadModel('model.safetensors'),
   ]);
   end.addEventListener('abort', () => model.dispose());
