@@ -18,6 +18,7 @@ mod neighbourhood;
 mod newton;
 mod outcome;
 mod outer_skin;
+mod part;
 mod posed;
 mod proximity;
 mod rescue;

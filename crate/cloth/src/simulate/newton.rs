@@ -5,6 +5,7 @@ mod assembly;
 mod descent;
 mod detection;
 mod layout;
+mod local;
 mod memory;
 
 use std::sync::Arc;
@@ -153,13 +154,20 @@ impl<'a> Solver<'a> {
     /// Iterates with growing time step until the residual is small and no vertex is inside the body, or nothing moves
     /// any more.
     pub fn relax(&mut self, body: Option<&PosedBody>, iterations: usize) -> Probe {
-        let mut h = FIRST_TIME_STEP;
+        self.relax_from(body, iterations, FIRST_TIME_STEP)
+    }
+
+    /// The same with that time step to begin with, seconds.
+    fn relax_from(&mut self, body: Option<&PosedBody>, iterations: usize, mut h: f64) -> Probe {
         let (mut before, mut shortest, mut drift) = (self.positions.clone(), h, f64::INFINITY);
         let mut near = !self.cloth.is_fine();
         self.resting = true;
         for iteration in 1..=iterations {
             self.exact = h > EXACT_ABOVE && near;
-            let probe = self.probe(body, h);
+            let mut probe = self.probe(body, h);
+            if probe.residual > self.settings.residual && self.relax_locally(body, h) {
+                probe = self.probe(body, h);
+            }
             near = !self.cloth.is_fine() || probe.residual < FINE_EXACT_BELOW;
             if probe.residual < self.settings.residual && probe.least_distance > 0.0 {
                 return Probe { drift: 0.0, ..probe };

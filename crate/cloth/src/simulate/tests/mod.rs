@@ -8,6 +8,7 @@ mod friction;
 mod hostile;
 mod layers;
 mod obstacle;
+mod part;
 mod pose;
 mod rescue;
 pub(super) mod scene;
