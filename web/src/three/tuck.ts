@@ -18,8 +18,8 @@ const HEM = 0.04;
 /**
  * Two garments, one over the other, of which neither knows: keeps the inner one under the outer one, on the arrays that
  * are drawn. Each vertex of the inner follows the vertex of the outer that is nearest, from frame to frame. To draw the
- * outer nearer alone is not enough: trousers came through a shirt in a run by 5 cm, and stood out beside it; and so near,
- * cloth is drawn before hands.
+ * outer nearer alone is not enough: trousers came through a shirt in a run by 5 cm, and stood out beside it; and cloth
+ * that is drawn so much nearer is drawn before hands, too.
  */
 export class Tuck {
   readonly inner: Garment;
