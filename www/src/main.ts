@@ -149,6 +149,8 @@ function offer(page: TryOn, arrange: () => void): void {
     },
     complete: () => Promise.all(page.dressed.models.map(({ complete }) => complete)),
     memory() {
+      // What was put on a moment ago is on the GPU once it is drawn.
+      page.draw();
       const { geometries, textures } = page.stage.renderer.info.memory;
       return { geometries, textures };
     },
