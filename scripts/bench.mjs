@@ -3,7 +3,7 @@
 // npm run bench -- --dial: what a mesh stream in every k-th frame costs in accuracy.
 // npm run bench -- --block: how long a page is held up by loads and predictions, with and without a worker.
 // npm run bench -- --visit: what a visitor of the demo page waits for on a slow line; 200 changes of clothes.
-// npm run bench -- --cast: every model of the demo page.
+// npm run bench -- --cast: every model of the demo page, or those named behind it, as in -- --cast andy-dress.
 // npm run bench -- --peers: beside other runtimes, into docs/results.md.
 import { copyFileSync, mkdirSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
@@ -97,7 +97,7 @@ await main(async () => {
   await buildLibrary();
   if (process.argv.includes('--dial')) return measureDial();
   if (process.argv.includes('--block')) return measureBlocks();
-  if (process.argv.includes('--cast')) return measureModels();
+  if (process.argv.includes('--cast')) return measureModels(process.argv.slice(2).filter((word) => !word.startsWith('--')));
   if (process.argv.includes('--visit')) return build().then(measureVisits);
   if (process.argv.includes('--peers')) return comparePeers(ctsn);
   say('native, one thread');
