@@ -162,7 +162,13 @@ impl Steps<'_> {
         let pose = Report::new(dataset)?.seconds.median / cores;
         match self.budget {
             Some(budget) => {
-                let possible = (budget.as_secs_f64() * (SHARES[0] + SHARES[2]) / pose.max(1e-3)) as usize;
+                let share = SHARES[0] + SHARES[2];
+                let least = Duration::from_secs_f64(2.0 * FEWEST.min(poses) as f64 * pose / share);
+                if least > budget {
+                    println!("{FEWEST} poses of each kind are the fewest, so this takes longer than was asked for");
+                }
+                let budget = budget.max(least);
+                let possible = (budget.as_secs_f64() * share / pose.max(1e-3)) as usize;
                 println!(
                     "this takes {}: a pose takes {pose:.1} s, so about {} of {poses} poses are simulated; a first model is \
                      there after {}",
