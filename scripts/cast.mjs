@@ -83,7 +83,7 @@ export async function measureModels(names) {
       say(name);
       const isSimulated = existsSync(file(`${name}.truth`));
       const found = await inPage(origin, measureInPage, { name, clip: PAIRS[name].shown, isSimulated });
-      // Frames of another motion, or put elsewhere than the figure is, would pass for a bad model.
+      // Frames of another motion would pass for a bad model.
       if (found.misplaced <= found.ways?.full.distance) throw new Stop(`${name}.truth: the frames are nearer to the poses before theirs than to their own`);
       measured.push({ name, ...found });
     }
