@@ -11,7 +11,7 @@ use ctsn_rig::mixed::has_limbs;
 use ctsn_train::dataset::Dataset;
 use ctsn_train::ground_truth::Shard;
 use ctsn_train::report::Report;
-use ctsn_train::training::Settings;
+use ctsn_train::training::{POSES, Settings};
 use indicatif::HumanDuration;
 use maud::Markup;
 use std::path::{Path, PathBuf};
@@ -75,6 +75,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let budget = asked.budget.or((!counted).then_some(BUDGET));
     let frames: usize = character.clips.iter().map(|clip| clip.poses.len()).sum();
     let frames = options.poses.unwrap_or(frames).min(frames);
+    ensure!(frames >= POSES, "wanted at least {POSES} poses to learn from, found {frames} in the clips and --poses");
     let mixable = options.mixed == 0 && has_limbs(&character);
     let mixed = if mixable { frames / 2 } else { options.mixed };
 

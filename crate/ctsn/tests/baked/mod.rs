@@ -57,6 +57,13 @@ fn a_bake_learns_from_paths_and_then_from_its_own_predictions() {
 }
 
 #[test]
+fn a_bake_of_too_few_poses_is_refused_before_they_are_simulated() {
+    let folder = turning(100);
+    folder.refuses(&format!("{BAKE} --poses 49 --epochs 2"), &["at least 50 poses", "found 49"]);
+    assert!(!folder.path("out.work").join("first").exists());
+}
+
+#[test]
 fn a_bake_in_too_little_time_still_makes_a_model() {
     let folder = turning(100);
     let told = folder.accepts(&format!("{BAKE} --poses 90 --time-budget 1s"));

@@ -39,7 +39,7 @@ use item::Item;
 pub use mirror::mirrored;
 use parameters::Parameters;
 use recording::Recording;
-pub use slice::{Slices, slices};
+pub use slice::{POSES, Slices, slices};
 use std::time::{Duration, Instant};
 use step::Worker;
 use tape::Tape;

@@ -4,7 +4,7 @@ use crate::dataset::{Dataset, Sample, Split};
 use crate::{Error, Result};
 
 /// Fewest poses that are worth training on.
-const POSES: usize = 50;
+pub const POSES: usize = 50;
 
 /// The poses of a training.
 #[derive(Clone, Debug)]
