@@ -21,7 +21,8 @@ impl Cloth {
         }
     }
 
-    /// The `free` vertices [n], those that share an element with them, and the triangles around what is `near` them [n].
+    /// The `free` vertices [n], those that share an element with them, and the triangles around what is `near` them
+    /// [n].
     pub(super) fn part_around(&self, free: &[bool], mut near: Vec<bool>) -> Part {
         self.spread(&mut near);
         for clique in self.cliques().filter(|clique| clique.iter().any(|&v| free[v])) {
