@@ -1,7 +1,8 @@
 // Garments over one another: the inner under the outer, and what comes over what goes.
-import { MeshBasicMaterial, type BufferAttribute } from 'three';
+import { MeshBasicMaterial, Vector3, type BufferAttribute } from 'three';
 import { afterEach, beforeEach, expect, test, vi } from 'vitest';
 import { Wardrobe } from 'ctsn/three';
+import { Cells } from '../dist/three/cells.js';
 import { characterOf } from './character.js';
 import { bytesOf, loadGolden } from './golden.js';
 
@@ -75,4 +76,18 @@ test('what comes is over what goes, as much as it is there; what goes stays over
   const all = pass(wardrobe, 0.25);
   expect(under(all.shirt, all.dress)).toEqual([6, 6]);
   expect(under(all.trousers, all.shirt)[0]).toBeGreaterThan(0);
+});
+
+test('the nearest point within reach is found, however the points lie in the grid', () => {
+  const at = (i: number) => new Vector3(Math.sin(7.1 * i), Math.sin(3.3 * i + 1), Math.cos(5.7 * i)).multiplyScalar(0.3);
+  const points = Array.from({ length: 400 }, (_, i) => at(i));
+  const cells = new Cells(0.1);
+  points.forEach((point) => cells.add(point));
+  const answers = Array.from({ length: 400 }, (_, i) => at(i + 0.37).multiplyScalar(1 + (i % 3) / 2)).map((place) => {
+    const far = points.map((point) => point.distanceTo(place));
+    const nearest = far.indexOf(Math.min(...far));
+    expect(cells.nearest(place)).toBe(far[nearest]! < 0.1 ? nearest : -1);
+    return far[nearest]! < 0.1;
+  });
+  expect(new Set(answers)).toEqual(new Set([true, false]));
 });

@@ -27,31 +27,18 @@ export async function coveredSkin({ model, bones }: Cloth<Material, AnyClothMode
   const cloth = new Cells(REACH);
   const bare = new Cells(MARGIN);
   const [at, out, way] = [new Vector3(), new Vector3(), new Vector3()];
-  inside.forEach((_, vertex) => cloth.add(at.fromArray(positions, 3 * vertex), vertex));
+  inside.forEach((_, vertex) => cloth.add(at.fromArray(positions, 3 * vertex)));
   const place = (vertex: number) => at.fromBufferAttribute(position!, vertex).applyMatrix4(toModel);
   for (let vertex = 0; vertex < covered.length; vertex++) {
     place(vertex);
     out.fromBufferAttribute(normal, vertex).transformDirection(toModel);
-    let [nearest, before] = [REACH, false];
-    for (const other of cloth.near(at)) {
-      const far = way.fromArray(positions, 3 * other).sub(at).length();
-      if (far >= nearest) continue;
-      nearest = far;
-      const ahead = way.dot(out);
-      before = ahead > 0 && Math.sqrt(far * far - ahead * ahead) < BESIDE;
-      covered[vertex] = before && inside[other]! > MARGIN ? 1 : 0;
-    }
-    if (!before) bare.add(at, vertex);
+    const nearest = cloth.nearest(at);
+    const ahead = nearest < 0 ? 0 : way.fromArray(positions, 3 * nearest).sub(at).dot(out);
+    const before = ahead > 0 && Math.sqrt(way.lengthSq() - ahead * ahead) < BESIDE;
+    if (before) covered[vertex] = inside[nearest]! > MARGIN ? 1 : 0;
+    else bare.add(at);
   }
-  const seen = new Vector3();
-  return covered.map((mark, vertex) => {
-    if (mark === 0) return 0;
-    place(vertex);
-    for (const other of bare.near(at)) {
-      if (seen.fromBufferAttribute(position!, other).applyMatrix4(toModel).distanceTo(at) < MARGIN) return 0;
-    }
-    return 1;
-  });
+  return covered.map((mark, vertex) => (mark === 1 && bare.nearest(place(vertex)) < 0 ? 1 : 0));
 }
 
 /** What takes a mesh as it was bound to where the model has it; nothing where they have no joint in common. */

@@ -113,14 +113,9 @@ class Sheet {
 function pair({ rest: inner }: Garment, { rest: outer }: Garment): Int32Array {
   const [at, way] = [new Vector3(), new Vector3()];
   const cells = new Cells(REACH);
-  for (let i = 0; i < outer.positions.length; i += 3) cells.add(at.fromArray(outer.positions, i), i / 3);
+  for (let i = 0; i < outer.positions.length; i += 3) cells.add(at.fromArray(outer.positions, i));
   return Int32Array.from({ length: inner.positions.length / 3 }, (_, vertex) => {
-    at.fromArray(inner.positions, 3 * vertex);
-    let [nearest, least] = [-1, REACH];
-    for (const other of cells.near(at)) {
-      const far = way.fromArray(outer.positions, 3 * other).distanceTo(at);
-      if (far < least) [nearest, least] = [other, far];
-    }
+    const nearest = cells.nearest(at.fromArray(inner.positions, 3 * vertex));
     if (nearest < 0) return -1;
     const facing = way.fromArray(outer.normals, 3 * nearest).dot(at.fromArray(inner.normals, 3 * vertex));
     return facing > 0 ? nearest : -1;
