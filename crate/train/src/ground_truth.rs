@@ -2,6 +2,7 @@
 //! they are done; those already there are skipped. The result does not depend on order, threads or shards; of the
 //! machine, only on its [`level`](level::level).
 
+mod adopted;
 mod level;
 pub mod noise;
 mod poses;
@@ -15,6 +16,7 @@ mod timing;
 use crate::dataset::{Record, Sample, Setup, Split, mixed_path, pose_path, twin_path};
 use crate::judging::check_joints;
 use crate::{Error, Result};
+pub use adopted::adopt;
 use ctsn_cloth::simulate::{Outcome, Simulator};
 use ctsn_rig::mixed::{has_limbs, mixed};
 use ctsn_rig::path::is_sound;

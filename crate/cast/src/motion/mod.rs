@@ -6,6 +6,7 @@ pub(crate) mod curve;
 pub mod humanoid;
 pub mod quadruped;
 pub mod reading;
+pub mod retarget;
 mod rigid;
 pub mod swimmer;
 

@@ -9,7 +9,7 @@ use ctsn_rig::Character;
 use ctsn_rig::file::{read, write};
 use ctsn_rig::mixed::has_limbs;
 use ctsn_train::dataset::Dataset;
-use ctsn_train::ground_truth::Shard;
+use ctsn_train::ground_truth::{Shard, adopt};
 use ctsn_train::report::Report;
 use ctsn_train::training::{POSES, Settings};
 use indicatif::HumanDuration;
@@ -20,8 +20,8 @@ use std::time::{Duration, Instant};
 /// Character and garment in, model out: simulate → train → simulate from its predictions → train → evaluate
 ///
 /// First a few poses are simulated along a path each, and a first model is trained on them: it is usable from then on.
-/// All others are relaxed from what it predicts, which is faster and chooses folds that a network can learn; on these
-/// the final model is trained. To the character's own clips, motion is generated where its skeleton has a known form,
+/// All others are relaxed from what it predicts, which is faster and chooses folds that a network can learn; on all of
+/// them the final model is trained. To the character's own clips, motion is generated where its skeleton has a known form,
 /// and poses are mixed. The unseen tenth is the end of that list: generated clips, where there are any.
 ///
 /// The whole takes an hour (--time-budget), or as long as it takes with --epochs: then the result does not depend on
@@ -97,6 +97,8 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     }
     let many = simulate::Options { poses: Some(frames), mixed, from: Some(first), ..options.clone() };
     println!("step 3 of 5: poses from what it predicts");
+    // To relax them anew would teach less than as many others.
+    adopt(&work.join("first"), &work)?;
     steps.simulate(&many, &work, 2)?;
     println!("step 4 of 5: the model");
     steps.train(&work, output, SHARES[3])?;
@@ -164,9 +166,9 @@ impl Steps<'_> {
         match self.budget {
             Some(budget) => {
                 let share = SHARES[0] + SHARES[2];
-                let least = Duration::from_secs_f64(2.0 * FEWEST.min(poses) as f64 * pose / share);
+                let least = Duration::from_secs_f64(FEWEST.min(poses) as f64 * pose / share);
                 if least > budget {
-                    println!("{FEWEST} poses of each kind are the fewest, so this takes longer than was asked for");
+                    println!("{FEWEST} poses are the fewest, so this takes longer than was asked for");
                 }
                 let budget = budget.max(least);
                 let possible = (budget.as_secs_f64() * share / pose.max(1e-3)) as usize;

@@ -3,12 +3,13 @@
 use anyhow::{Context, Result, anyhow, bail};
 use ctsn_cast::motion;
 use ctsn_cast::motion::reading::{Reading, parts};
+use ctsn_cast::motion::retarget::retarget;
 use ctsn_rig::file::read;
-use ctsn_rig::{Character, gltf};
+use ctsn_rig::{Character, Clip, gltf};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// Give a character generated clips in place of its own
+/// Give a character generated clips, or those of another character, in place of its own
 ///
 /// Which joint is which part of a body is read from the bones a VRM file names, from the names of the common families
 /// (Mixamo, Unreal, VRoid, Rigify, Biped, …), and where names do not tell, from the skeleton itself: limbs are mirrored
@@ -20,6 +21,10 @@ pub struct Arguments {
     character: PathBuf,
     #[command(flatten)]
     joints: Joints,
+    /// Take the clips of this character (glTF), of the same kind of body but any names, posture and proportions, in
+    /// place of generated ones: limbs point where its limbs point, steps are as wide as the legs are long
+    #[arg(long, value_name = "OTHER")]
+    from: Option<PathBuf>,
     /// Poses per second of the clips
     #[arg(long, default_value_t = motion::RATE)]
     rate: f64,
@@ -73,9 +78,22 @@ pub fn say(character: &Character) {
 pub fn run(arguments: &Arguments) -> Result<()> {
     let mut character = gltf::read_character(&arguments.character, motion::RATE)?;
     arguments.joints.tell(&mut character)?;
-    character.clips = motion::clips(&character, arguments.rate)?;
+    character.clips = match &arguments.from {
+        None => motion::clips(&character, arguments.rate)?,
+        Some(path) => taken(path, &character, arguments.rate)?,
+    };
     say(&character);
     gltf::write_character(&arguments.output, &character, &gltf::Appearance::default())?;
     super::list_clips(&arguments.output, &character);
     Ok(())
+}
+
+/// The clips of another character, for this one.
+fn taken(path: &Path, character: &Character, rate: f64) -> Result<Vec<Clip>> {
+    let other = gltf::read_character(path, rate)?;
+    if other.clips.is_empty() {
+        bail!("{} has no clip, wanted at least one", path.display());
+    }
+    say(&other);
+    Ok(retarget(&other, character)?)
 }

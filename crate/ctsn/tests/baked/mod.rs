@@ -50,7 +50,14 @@ fn a_bake_learns_from_paths_and_then_from_its_own_predictions() {
     };
     assert!(teacher("out.work/first").is_none() && teacher("out.work").is_some());
     let [first, model] = ["out.work/first.safetensors", "out.safetensors"].map(|name| std::fs::read(folder.path(name)));
-    assert_ne!(first.expect("a model"), *model.as_ref().expect("a model"), "the second learned from other poses");
+    assert_ne!(first.expect("a model"), *model.as_ref().expect("a model"), "the second learned from more poses");
+    let along = std::fs::read_dir(folder.path("out.work/first/poses")).expect("poses");
+    for pose in along.map(|entry| entry.expect("a pose")) {
+        let kept = std::fs::read(folder.path("out.work/poses").join(pose.file_name())).ok();
+        assert_eq!(kept, std::fs::read(pose.path()).ok(), "{:?} is not simulated twice", pose.file_name());
+    }
+    let poses = |data: &str| ctsn_train::report::Report::new(&folder.path(data)).expect("a report").kept;
+    assert!(poses("out.work") > poses("out.work/first"), "others are relaxed from predictions");
     let again = folder.accepts(&bake);
     assert!(again.contains("0 poses to simulate") && again.contains("has been trained so already"), "{again}");
     assert_eq!(std::fs::read(folder.path("out.safetensors")).ok(), model.ok());

@@ -14,6 +14,12 @@ fn joints_that_are_told_are_checked_and_reported() {
     for words in ["two arms and two legs", "by place in the skeleton", "LeftForeArm = bone."] {
         assert!(said.contains(words), "wanted {words:?} in {said}");
     }
+    let taken = folder.accepts("motion character.glb --from moving.glb --rate 2 -o taken.glb");
+    assert!(taken.contains("showcase"), "{taken}");
+    edit(&folder.path("taken.glb"), |json, _| {
+        json.as_object_mut().expect("an object").remove("animations");
+    });
+    folder.refuses("motion character.glb --from taken.glb -o moving.glb", &["taken.glb has no clip"]);
     folder
         .write("map.json", br#"{"Tentacle": "bone.003"}"#)
         .write("lost.json", br#"{"LeftArm": "bone.777"}"#)

@@ -1,6 +1,7 @@
 //! The model before its first step: everything that is not learned, and seeded initial weights.
 //! The mesh stream sees the body vertex nearest to each cloth vertex (KD-tree). network.md §3, §4.
 
+use super::blur::blur;
 use super::{limbs, weights};
 use crate::dataset::{Sample, Setup};
 use crate::{Error, Result};
@@ -65,6 +66,11 @@ pub fn initial(setup: &Setup, train: &[&Sample], architecture: Architecture, see
     let body_frames = body_frames(setup, train)?;
     let inputs = |l: usize| if l == 0 { 3 } else { features };
     let weights = weights::smooth(setup, &graph, &nearest)?;
+    let [skeleton_basis, mesh_basis] = [embedding, basis].map(|count| {
+        let mut basis = small(n * 3 * count, &mut rng);
+        blur(&graph, &mut basis);
+        basis
+    });
     let (carried, heard) = heard(setup, &weights);
     let parts = limbs::parts(&setup.description.parents, &carried, &heard);
     let drawn = setup.drawn.as_ref();
@@ -77,10 +83,10 @@ pub fn initial(setup: &Setup, train: &[&Sample], architecture: Architecture, see
         graph,
         rest: setup.template.clone(),
         embedding: limbs::embedding(&parts, embedding, &mut rng),
-        skeleton_basis: small(n * 3 * embedding, &mut rng),
+        skeleton_basis,
         layers: (0..layers).map(|l| layer(inputs(l), features, &mut rng)).collect(),
         vertex_mlp: mlp(&[features, VERTEX, basis], &mut rng),
-        mesh_basis: small(n * 3 * basis, &mut rng),
+        mesh_basis,
         mesh_stream: true,
         surface: Some(drawn.map_or(&setup.surface, |drawn| &drawn.surface).clone()).filter(|it| !it.vertex.is_empty()),
         ride: drawn.map(|drawn| drawn.ride.clone()),
@@ -199,7 +205,7 @@ pub(super) fn rows_to_skin(rows: &[SkinWeights]) -> Skinning<Vec<f32>, Vec<u32>>
 
 /// Residual matrices start near nothing, so that training starts from plain skinning.
 fn small(length: usize, rng: &mut fastrand::Rng) -> Vec<f32> {
-    (0..length).map(|_| (rng.f32() - 0.5) * 2e-3).collect()
+    (0..length).map(|_| (rng.f32() - 0.5) * 4e-4).collect()
 }
 
 /// PyTorch's default: uniform in ±1/√inputs.

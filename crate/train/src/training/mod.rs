@@ -2,6 +2,7 @@
 //! is dealt in a fixed number of shares, summed in their order, so the result does not depend on threads.
 
 pub(crate) mod adam;
+mod blur;
 mod checkpoint;
 pub mod curve;
 mod duration;
@@ -161,7 +162,7 @@ impl Trainer {
         let shares = SHARES.min(batch);
         let worker = |_| Worker::new(&recording, unsimulated.as_ref(), &shared, made()?);
         let workers = (0..shares.min(rayon::current_num_threads())).map(worker).collect::<Result<_>>()?;
-        let mut parameters = Parameters::new(shared, learning);
+        let mut parameters = Parameters::new(shared, learning).over(model.graph.clone());
         hypernetwork.iter_mut().for_each(|network| network.make(&mut parameters));
         let sums = vec![parameters.each().map(|(_, values)| vec![0.0; values.len()]).collect(); shares];
         let mut trainer = Self {

@@ -1,10 +1,12 @@
 //! The arrays that Adam steps, by name, with its moments.
 
 use super::adam::Moments;
+use super::blur::{blur, is_blurred};
 use super::tape::{Id, Shared};
 use crate::{Error, Result};
 use ctsn_core::file::{Tensor, Tensors};
 use ctsn_core::model::is_embedding_weight;
+use ctsn_core::topology::Graph;
 
 /// One array.
 struct Parameter {
@@ -19,6 +21,8 @@ struct Parameter {
 pub(crate) struct Parameters {
     pub shared: Shared,
     list: Vec<Parameter>,
+    /// The cloth over which steps of its bases are averaged.
+    cloth: Option<Graph<Vec<u32>>>,
 }
 
 impl Parameters {
@@ -30,7 +34,12 @@ impl Parameters {
                 (0..values.len()).filter(|entry| is_embedding_weight(&name) && values[*entry] == 0.0).collect();
             Parameter { silent, moments: Moments::new(values.len()), name, id }
         };
-        Self { list: arrays.into_iter().map(parameter).collect(), shared }
+        Self { list: arrays.into_iter().map(parameter).collect(), shared, cloth: None }
+    }
+
+    /// The same, with steps of the bases averaged over a cloth.
+    pub fn over(self, cloth: Graph<Vec<u32>>) -> Self {
+        Self { cloth: Some(cloth), ..self }
     }
 
     /// Their buffers.
@@ -60,6 +69,13 @@ impl Parameters {
         for (i, Parameter { name, id, silent, moments }) in self.list.iter_mut().enumerate() {
             let Some(gradients) = gradients(i, name) else { continue };
             let values = self.shared.get_mut(*id);
+            if let Some(cloth) = self.cloth.as_ref().filter(|_| is_blurred(name)) {
+                let mut change = vec![0.0; values.len()];
+                moments.step(step, rate, &gradients, &mut change);
+                blur(cloth, &mut change);
+                values.iter_mut().zip(&change).for_each(|(value, change)| *value += change);
+                continue;
+            }
             moments.step(step, rate, &gradients, values);
             silent.iter().for_each(|entry| values[*entry] = 0.0);
         }
