@@ -1,20 +1,36 @@
 //! `ctsn inspect`: what is in a model file or a dataset folder.
 
-use anyhow::{Context, Result};
+use super::ordered;
+use anyhow::{Context, Result, bail};
+use ctsn_cloth::simulate::BodyDistance;
+use ctsn_core::cpu::Level;
 use ctsn_core::file::Tensors;
 use ctsn_core::model::HostModel;
-use ctsn_rig::file;
+use ctsn_core::{Predictor, Streams};
+use ctsn_rig::path::body_frame;
+use ctsn_rig::{Character, Mesh, Pose, file, gltf, joints, vertices};
 use ctsn_train::report::Report;
-use std::path::PathBuf;
+use glam::DVec3;
+use rayon::prelude::*;
+use std::path::{Path, PathBuf};
+
+/// Poses a second that are predicted of a character's clips.
+const RATE: f64 = 6.0;
 
 /// Show what is in a model (sizes, tensors, bytes, joints, training), or the report of a dataset
 #[derive(clap::Args)]
 pub struct Arguments {
     /// Model file (safetensors), or dataset folder
     path: PathBuf,
+    /// Tell instead how much of a model's cloth is inside its character (glTF) in every clip, before the repair and after
+    #[arg(long, value_name = "CHARACTER")]
+    on: Option<PathBuf>,
 }
 
-pub fn run(Arguments { path }: &Arguments) -> Result<()> {
+pub fn run(Arguments { path, on }: &Arguments) -> Result<()> {
+    if let Some(character) = on {
+        return inside(path, character);
+    }
     if path.is_dir() {
         println!("{}", Report::new(path)?);
         return Ok(());
@@ -47,4 +63,52 @@ pub fn run(Arguments { path }: &Arguments) -> Result<()> {
 
 fn outputs(layers: &[ctsn_core::model::Linear<Vec<f32>>]) -> String {
     layers.iter().map(|layer| layer.outputs.to_string()).collect::<Vec<_>>().join(" → ")
+}
+
+/// Prints the share of the cloth's vertices inside the character, and how deep, by clip and over all.
+fn inside(path: &Path, character: &Path) -> Result<()> {
+    let model = super::model(path)?;
+    let character = gltf::read_character(character, RATE)?;
+    if character.clips.is_empty() {
+        bail!("the character has no clip to look at");
+    }
+    let cloth = Mesh { positions: vertices(&model.rest), triangles: model.triangles.as_chunks().0.to_vec() };
+    let body = BodyDistance::new(&character, &cloth)?;
+    let ways = [HostModel { body: None, ..model.clone() }, model];
+    println!("vertices inside the body before the repair, and after: share, deepest");
+    let mut all = [(0.0, 0.0_f64); 2];
+    let mut count = 0;
+    for clip in &character.clips {
+        let frames = clip.poses.par_iter().map(|pose| look(&ways, &character, &body, pose));
+        let frames = frames.collect::<Result<Vec<_>>>()?;
+        let over = |way: usize| {
+            frames.iter().fold((0.0, 0.0_f64), |(sum, most), frame| (sum + frame[way].0, most.max(frame[way].1)))
+        };
+        let found = [over(0), over(1)];
+        println!("  {:<20} {}", clip.name, told(found, frames.len()));
+        all.iter_mut().zip(found).for_each(|(all, found)| *all = (all.0 + found.0, all.1.max(found.1)));
+        count += frames.len();
+    }
+    println!("  {:<20} {}, {count} frames", "all", told(all, count));
+    Ok(())
+}
+
+/// Share of the vertices inside in one pose, and the greatest depth in metres, without the repair and with it.
+fn look(ways: &[HostModel; 2], character: &Character, body: &BodyDistance, pose: &Pose) -> Result<[(f64, f64); 2]> {
+    let mut found = [(0.0, 0.0); 2];
+    for (found, model) in found.iter_mut().zip(ways) {
+        let mut predictor = Predictor::from_model(model.clone(), Level::new());
+        predictor.predict_row_major(&joints(&ordered(&model.rig.joints, character, pose)?), Streams::Both)?;
+        let into = body_frame(character, pose);
+        let cloth = vertices(predictor.positions()).into_iter().map(|vertex| into.transform_point3(vertex));
+        let signed = body.signed(pose, &cloth.collect::<Vec<DVec3>>());
+        let inside = signed.iter().filter(|distance| **distance < 0.0);
+        *found = (inside.clone().count() as f64 / signed.len() as f64, inside.fold(0.0_f64, |most, at| most.max(-at)));
+    }
+    Ok(found)
+}
+
+fn told(sums: [(f64, f64); 2], frames: usize) -> String {
+    let one = |(sum, deepest): (f64, f64)| format!("{:.3} %, {:.1} mm", 100.0 * sum / frames as f64, 1e3 * deepest);
+    sums.map(one).join(" -> ")
 }

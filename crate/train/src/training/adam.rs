@@ -1,9 +1,7 @@
 //! Adam (Kingma and Ba 2015), with warm-up and cosine decay of the learning rate. network.md §6.
-//! Tried: steps of the bases B and M averaged over neighbouring vertices, against lumps. With one to four rounds the
-//! validation error of a sheet (160 poses, 80 epochs) went from 6.78 to 6.74 to 6.77 mm: not worth a pass over the
-//! gradients. Tried against overfitting, on a T-shirt (363 poses, 30 epochs): decoupled weight decay of 0.1 and 0.5,
-//! and noise of 0.05 to 0.15 on the standardised pose vector. Validation errors of 10.1 to 10.6 mm, where two seeds
-//! without any of it gave 9.65 and 11.25: whoever compares ways to train must compare several seeds.
+//! Tried against overfitting, on a T-shirt (363 poses, 30 epochs): decoupled weight decay of 0.1 and 0.5, and noise of
+//! 0.05 to 0.15 on the standardised pose vector. Validation errors of 10.1 to 10.6 mm, where two seeds without any of it
+//! gave 9.65 and 11.25: whoever compares ways to train must compare several seeds.
 
 use rayon::prelude::*;
 

@@ -24,7 +24,7 @@ fn cloth_learns_from_its_energy_alone() {
 fn a_teacher_learns_where_cloth_is_and_how_it_folds() {
     let (model, setup, samples) = scene();
     let samples: Vec<&Sample> = samples.iter().take(3).collect();
-    let settings = Settings { epochs: 60, batch: 3, ..Settings::default() };
+    let settings = Settings { epochs: 400, batch: 3, ..Settings::default() };
     let mut trainer = Trainer::teacher(model, &setup, &samples, settings).unwrap();
     let rows: Vec<Row> = (0..settings.epochs).map(|_| trainer.round(&samples).unwrap()).collect();
     // Both at once: the truth of this scene is inside the body, where contact does not let the cloth go.

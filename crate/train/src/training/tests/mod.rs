@@ -180,7 +180,7 @@ fn overfits_to_below_a_millimetre() {
     let samples: Vec<&Sample> = samples.iter().collect();
     let architecture = Architecture { embedding: 8, basis: 32, layers: 2, heads: 2, features: 16 };
     let model = initial(&setup, &samples, architecture, 1).unwrap();
-    let settings = Settings { epochs: 1500, batch: 4, ..Settings::default() };
+    let settings = Settings { epochs: 2500, batch: 4, ..Settings::default() };
     let distances = named(&["coarse", "fine"]);
     let mut trainer = Trainer::with(model, None, &distances, &setup, &samples, settings).unwrap();
     let first = fine(&mut trainer);
