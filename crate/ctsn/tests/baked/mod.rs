@@ -58,6 +58,8 @@ fn a_bake_learns_from_paths_and_then_from_its_own_predictions() {
     }
     let poses = |data: &str| ctsn_train::report::Report::new(&folder.path(data)).expect("a report").kept;
     assert!(poses("out.work") > poses("out.work/first"), "others are relaxed from predictions");
+    let inside = folder.accepts("inspect out.safetensors --on character.glb");
+    assert!(inside.contains("before the repair") && inside.contains("frames"), "{inside}");
     let again = folder.accepts(&bake);
     assert!(again.contains("0 poses to simulate") && again.contains("has been trained so already"), "{again}");
     assert_eq!(std::fs::read(folder.path("out.safetensors")).ok(), model.ok());
