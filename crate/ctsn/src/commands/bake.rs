@@ -21,8 +21,8 @@ use std::time::{Duration, Instant};
 ///
 /// First a few poses are simulated along a path each, and a first model is trained on them: it is usable from then on.
 /// All others are relaxed from what it predicts, which is faster and chooses folds that a network can learn; on all of
-/// them the final model is trained. To the character's own clips, motion is generated where its skeleton has a known form,
-/// and poses are mixed. The unseen tenth is the end of that list: generated clips, where there are any.
+/// them the final model is trained. To the character's own clips, motion is generated where its skeleton has a known
+/// form, and poses are mixed. The unseen tenth is the end of that list: generated clips, where there are any.
 ///
 /// The whole takes an hour (--time-budget), or as long as it takes with --epochs: then the result does not depend on
 /// the machine's speed. Intermediate results are kept in a folder beside the model (MODEL.work), from which an

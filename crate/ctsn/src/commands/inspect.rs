@@ -22,7 +22,8 @@ const RATE: f64 = 6.0;
 pub struct Arguments {
     /// Model file (safetensors), or dataset folder
     path: PathBuf,
-    /// Tell instead how much of a model's cloth is inside its character (glTF) in every clip, before the repair and after
+    /// Tell instead how much of a model's cloth is inside its character (glTF) in every clip, before the repair and
+    /// after
     #[arg(long, value_name = "CHARACTER")]
     on: Option<PathBuf>,
 }

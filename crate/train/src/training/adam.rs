@@ -1,7 +1,7 @@
 //! Adam (Kingma and Ba 2015), with warm-up and cosine decay of the learning rate. network.md §6.
 //! Tried against overfitting, on a T-shirt (363 poses, 30 epochs): decoupled weight decay of 0.1 and 0.5, and noise of
-//! 0.05 to 0.15 on the standardised pose vector. Validation errors of 10.1 to 10.6 mm, where two seeds without any of it
-//! gave 9.65 and 11.25: whoever compares ways to train must compare several seeds.
+//! 0.05 to 0.15 on the standardised pose vector. Validation errors of 10.1 to 10.6 mm, where two seeds without any of
+//! it gave 9.65 and 11.25: whoever compares ways to train must compare several seeds.
 
 use rayon::prelude::*;
 
