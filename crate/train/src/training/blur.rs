@@ -4,15 +4,16 @@
 //!
 //! Bending over the truth's, unseen motion, with and without: a dress of 6,016 vertices (53 poses, 20 epochs; 8 rounds)
 //! 1.37 and 1.67; a T-shirt of 2,993 (50 poses, 25 epochs; 5 rounds) 1.08 and 1.22; a sheet of 1,202 (50 poses, 40
-//! epochs; 3 rounds) 2.00 and 2.49. E_dist 22.5 and 22.5 mm, 9.7 and 9.6, 18.7 and 18.6; E_norm 13.3° and 13.4, 11.1 and
-//! 10.9, 10.6 and 10.6. The skeleton stream's basis alone, 4 rounds: the T-shirt's bending 1.20. A tenth of the first
-//! values alone: 1.23.
+//! epochs; 3 rounds) 2.00 and 2.49. E_dist 22.5 and 22.5 mm, 9.7 and 9.6, 18.7 and 18.6; E_norm 13.3° and 13.4, 11.1
+//! and 10.9, 10.6 and 10.6. The skeleton stream's basis alone, 4 rounds: the T-shirt's bending 1.20. A tenth of the
+//! first values alone: 1.23.
 
 use ctsn_core::model::{MESH_BASIS, SKELETON_BASIS};
 use ctsn_core::topology::Graph;
 use rayon::prelude::*;
 
-/// Each round brings half of a vertex's numbers to the mean of its neighbours'. What repeats every six edges keeps half.
+/// Each round brings every vertex half of the way to the mean of its neighbours. What repeats every six edges keeps
+/// half.
 const ROUNDS: usize = 5;
 
 /// Whether the array of that name is averaged: a basis, of a row for each vertex.
