@@ -75,12 +75,16 @@ fn inside(path: &Path, character: &Path) -> Result<()> {
     }
     let cloth = Mesh { positions: vertices(&model.rest), triangles: model.triangles.as_chunks().0.to_vec() };
     let body = BodyDistance::new(&character, &cloth)?;
+    let names = model.rig.joints.clone();
     let ways = [HostModel { body: None, ..model.clone() }, model];
+    // One of each a thread.
+    let predictors = || ways.each_ref().map(|way| Predictor::from_model(way.clone(), Level::new()));
     println!("vertices inside the body before the repair, and after: share, deepest");
     let mut all = [(0.0, 0.0_f64); 2];
     let mut count = 0;
     for clip in &character.clips {
-        let frames = clip.poses.par_iter().map(|pose| look(&ways, &character, &body, pose));
+        let look = |ways: &mut [Predictor; 2], pose: &Pose| look(ways, &names, &character, &body, pose);
+        let frames = clip.poses.par_iter().map_init(predictors, look);
         let frames = frames.collect::<Result<Vec<_>>>()?;
         let over = |way: usize| {
             frames.iter().fold((0.0, 0.0_f64), |(sum, most), frame| (sum + frame[way].0, most.max(frame[way].1)))
@@ -94,17 +98,24 @@ fn inside(path: &Path, character: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Share of the vertices inside in one pose, and the greatest depth in metres, without the repair and with it.
-fn look(ways: &[HostModel; 2], character: &Character, body: &BodyDistance, pose: &Pose) -> Result<[(f64, f64); 2]> {
+/// Share of the vertices inside in one pose, and the greatest depth in metres, by each of the predictors.
+fn look(
+    ways: &mut [Predictor; 2],
+    names: &[String],
+    character: &Character,
+    body: &BodyDistance,
+    pose: &Pose,
+) -> Result<[(f64, f64); 2]> {
+    let ordered = joints(&ordered(names, character, pose)?);
+    let into = body_frame(character, pose);
     let mut found = [(0.0, 0.0); 2];
-    for (found, model) in found.iter_mut().zip(ways) {
-        let mut predictor = Predictor::from_model(model.clone(), Level::new());
-        predictor.predict_row_major(&joints(&ordered(&model.rig.joints, character, pose)?), Streams::Both)?;
-        let into = body_frame(character, pose);
+    for (found, predictor) in found.iter_mut().zip(ways) {
+        predictor.predict_row_major(&ordered, Streams::Both)?;
         let cloth = vertices(predictor.positions()).into_iter().map(|vertex| into.transform_point3(vertex));
         let signed = body.signed(pose, &cloth.collect::<Vec<DVec3>>());
         let inside = signed.iter().filter(|distance| **distance < 0.0);
-        *found = (inside.clone().count() as f64 / signed.len() as f64, inside.fold(0.0_f64, |most, at| most.max(-at)));
+        let share = inside.clone().count() as f64 / signed.len() as f64;
+        *found = (share, inside.fold(0.0_f64, |most, at| most.max(-at)));
     }
     Ok(found)
 }
