@@ -1,5 +1,17 @@
 // A wardrobe changes what its character wears, without a bare frame and without growing.
-import { MeshBasicMaterial, OrthographicCamera, PerspectiveCamera, Vector3, type Bone, type Camera, type Group, type Scene, type WebGLRenderer } from 'three';
+import {
+  BackSide,
+  MeshBasicMaterial,
+  OrthographicCamera,
+  PerspectiveCamera,
+  Vector3,
+  type Bone,
+  type Camera,
+  type Group,
+  type Material,
+  type Scene,
+  type WebGLRenderer,
+} from 'three';
 import { afterEach, beforeEach, expect, test, vi } from 'vitest';
 import { CtsnError, loadModel, type ModelSource } from 'ctsn';
 import { Wardrobe, type WardrobeOptions, type WearOptions } from 'ctsn/three';
@@ -52,6 +64,37 @@ test('the first garment is there at once; the next comes before it, and only the
   await wardrobe.wear([]);
   expect(pass(wardrobe, 0.25)).toEqual({ dress: 0.5 });
   expect(pass(wardrobe, 0.25)).toEqual({});
+});
+
+test('what is shown while a garment comes and goes is the same object each time, as the material then is', async () => {
+  const { wardrobe } = await wardrobeOf({ fade: 1 });
+  await wardrobe.wear('shirt');
+  pass(wardrobe, 0);
+  const shown = async (name: string) => {
+    await wardrobe.wear(name);
+    pass(wardrobe, 0.25);
+    const ghost = wardrobe.cloth(name)!.material as Material;
+    const look = { opacity: ghost.opacity, transparent: ghost.transparent, side: ghost.side };
+    for (let part = 0; part < 3; part++) pass(wardrobe, 0.25);
+    return { ghost, look };
+  };
+  const first = await shown('dress');
+  await wardrobe.wear('shirt');
+  for (let part = 0; part < 4; part++) pass(wardrobe, 0.25);
+  const { side } = material;
+  material.side = BackSide;
+  const second = await shown('dress');
+  material.side = side;
+  expect(second.ghost).toBe(first.ghost);
+  expect(second.ghost).not.toBe(material);
+  expect([first.look, second.look]).toEqual([
+    { opacity: 0.4, transparent: true, side },
+    { opacity: 0.4, transparent: true, side: BackSide },
+  ]);
+  let freed = 0;
+  first.ghost.addEventListener('dispose', () => freed++);
+  wardrobe.dispose();
+  expect(freed).toBe(1);
 });
 
 test.each([

@@ -8,6 +8,7 @@ import { Cost } from './cost.js';
 import { element } from './dom.js';
 import { tell } from './failure.js';
 import { FabricPanel } from './fabric/panel.js';
+import { Samples } from './fabric/samples.js';
 import { Character, RATE } from './figure/character.js';
 import { Dressed } from './figure/dressed.js';
 import { fetchBytes } from './figure/fetch.js';
@@ -37,6 +38,7 @@ export class TryOn {
   readonly #cast: Figure[];
   readonly #rail = new Rail();
   readonly #fabric = new FabricPanel();
+  readonly #samples: Samples;
   readonly #poser: Poser;
   readonly #maps = new Maps();
   readonly #rivals: Rivals;
@@ -51,6 +53,7 @@ export class TryOn {
   constructor(stage: Stage, cast: Figure[]) {
     this.stage = stage;
     this.#cast = cast;
+    this.#samples = new Samples((object) => stage.prepare(object));
     this.#poser = new Poser(stage);
     this.#rivals = new Rivals(stage);
     stage.scene.add(this.#rivals);
@@ -64,19 +67,18 @@ export class TryOn {
   /** Shows a figure in these garments; what was shown stays until it is there. Overtaken calls end unseen. */
   async choose(entry: Figure, wear = entry.garments.slice(0, 1), onProgress?: (file: string, progress: Progress) => void): Promise<Dressed> {
     const turn = ++this.#turn;
+    // What draws it all is compiled while the files come.
+    for (const garment of wear) void this.#samples.prepare(garment, false);
     const bytes = await fetchBytes(entry, (progress) => onProgress?.('figure', progress));
-    const dressed = new Dressed(entry, await Character.parse(bytes, entry.name));
-    const { character } = dressed;
+    const character = await Character.parse(bytes, entry.name);
+    const dressed = new Dressed(entry, character, (look) => this.#samples.prepare(look, this.dressed === dressed));
     dressed.backend = this.cost.backend;
     if (character.clips[0]) character.show(character.clips[0], 0);
-    try {
-      await dressed.wear(wear, (progress) => onProgress?.('model', progress));
-    } catch (error) {
+    const worn = dressed.wear(wear, (progress) => onProgress?.('model', progress));
+    const [came] = await Promise.allSettled([worn, this.stage.prepare(character.scene)]);
+    if (came.status === 'rejected' || turn !== this.#turn) {
       dressed.dispose();
-      throw error;
-    }
-    if (turn !== this.#turn) {
-      dressed.dispose();
+      if (came.status === 'rejected') throw came.reason;
       return this.dressed;
     }
     this.#replace(dressed);

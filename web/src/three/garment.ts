@@ -1,5 +1,6 @@
-import { Material } from 'three';
+import type { Material } from 'three';
 import type { Cloth } from './cloth.js';
+import type { Ghost } from './ghost.js';
 import type { AnyClothModel } from './options.js';
 import type { Rest } from './rest.js';
 
@@ -14,12 +15,13 @@ export class Garment {
   share = 0;
   /** How many garments are below it. */
   depth = 0;
-  /** The page's material, and one like it that may be transparent: the page's may be on other garments too. */
+  readonly #ghost: Ghost;
+  /** The page's material, while a copy is shown in its place. */
   #own: Material | undefined;
-  #ghost: Material | undefined;
 
-  constructor(cloth: Cloth<Material, AnyClothModel>) {
+  constructor(cloth: Cloth<Material, AnyClothModel>, ghost: Ghost) {
     this.cloth = cloth;
+    this.#ghost = ghost;
   }
 
   /** Shows its share. */
@@ -33,26 +35,14 @@ export class Garment {
     }
     if (!this.#own) {
       this.#own = cloth.material;
-      this.#ghost ??= ghostOf(this.#own);
-      cloth.material = this.#ghost;
+      cloth.material = this.#ghost.of(this.#own);
     }
-    this.#ghost!.opacity = share * this.#own.opacity;
+    cloth.material.opacity = share * this.#own.opacity;
   }
 
   /** Frees the cloth and its model; the page's material is the page's. */
   dispose(): void {
-    this.#ghost?.dispose();
     this.cloth.dispose();
     this.cloth.model.dispose();
   }
-}
-
-/** A transparent copy. What a page does to shaders is no part of three's own. */
-function ghostOf(material: Material): Material {
-  const ghost = material.clone();
-  ghost.onBeforeCompile = material.onBeforeCompile;
-  ghost.customProgramCacheKey = material.customProgramCacheKey;
-  if (material.defines) ghost.defines = { ...material.defines };
-  ghost.transparent = true;
-  return ghost;
 }

@@ -5,6 +5,7 @@ import type { Quality } from '../quality.js';
 import type { Character } from './bones.js';
 import { Cloth } from './cloth.js';
 import { Garment } from './garment.js';
+import { Ghosts } from './ghost.js';
 import { drawNearer } from './layer.js';
 import { checkCharacter, is, refusal, type AnyClothModel, type ClothOptions } from './options.js';
 import { restOf } from './rest.js';
@@ -50,6 +51,7 @@ export class Wardrobe<Name extends string = string> extends Group {
   readonly #skin: Skin;
   /** What is on the character: worn, or on its way off. The innermost first. */
   readonly #garments = new Map<string, Garment>();
+  readonly #ghosts = new Ghosts();
   /** Every two of them; those that the outermost covers first. */
   #tucks: readonly Tuck[] = [];
   /** What the last call asked for: none of that is let go of while the rest comes. */
@@ -166,6 +168,7 @@ export class Wardrobe<Name extends string = string> extends Group {
     this.#disposed = true;
     this.#call.abort();
     for (const name of [...this.#garments.keys()]) this.#drop(name);
+    this.#ghosts.dispose();
     this.#skin.dispose();
     this.removeFromParent();
     super.dispose?.();
@@ -188,7 +191,7 @@ export class Wardrobe<Name extends string = string> extends Group {
         options.signal?.throwIfAborted();
         const made = typeof material === 'function' ? material(name as Name) : material;
         const cloth = new Cloth<Material, AnyClothModel>(model, this.#character, made, this.#options);
-        const opened = (garment = new Garment(cloth));
+        const opened = (garment = new Garment(cloth, this.#ghosts.of(name)));
         drawNearer(cloth, () => (this.#options.layer ?? 0.025) * opened.depth);
       } catch (error) {
         model.dispose();

@@ -32,7 +32,8 @@ export class Dressed {
   #worn: readonly Worn[] = [];
   readonly #materials = new Map<string, FabricMaterial>();
 
-  constructor(entry: Figure, character: Character) {
+  /** `prepare`: settles when a garment of that look can be drawn. */
+  constructor(entry: Figure, character: Character, prepare: (look: Look) => Promise<void>) {
     this.entry = entry;
     this.character = character;
     for (const garment of entry.garments) {
@@ -44,7 +45,9 @@ export class Dressed {
       load: async (source, options) => {
         // What was dropped on the page is kept by nobody.
         const cache = String(source).startsWith('blob:') ? undefined : 'ctsn';
-        const model: ClothModel = await loadModel(source, { ...options, progressive: true, cache });
+        const garment = entry.garments.find(({ file }) => file === source)!;
+        const loaded = loadModel(source, { ...options, progressive: true, cache });
+        const [model]: [ClothModel, void] = await Promise.all([loaded, prepare(this.looks.get(garment)!)]);
         for (const event of ['backend', 'complete']) model.addEventListener(event, () => this.onModel());
         // What broke off leaves the drape; who took the garment off meanwhile need not know.
         model.complete.then(() => this.#move(model)).catch((error: unknown) => model.disposed || this.onFailure(error));

@@ -153,6 +153,14 @@ export class Stage {
     return changed;
   }
 
+  /**
+   * Compiles what these objects are drawn with, beside the page's own work. A first `render()` does it, too, and the
+   * page stands still meanwhile.
+   */
+  async prepare(object: Object3D): Promise<void> {
+    await this.renderer.compileAsync(object, this.camera, this.scene);
+  }
+
   render(): void {
     this.renderer.render(this.scene, this.camera);
   }
