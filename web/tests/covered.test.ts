@@ -12,7 +12,7 @@ import {
 } from 'three';
 import { MeshoptDecoder } from 'three/addons/libs/meshopt_decoder.module.js';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
-import { expect, test } from 'vitest';
+import { expect, test, vi } from 'vitest';
 import { loadModel } from 'ctsn';
 import { Cloth, coveredSkin, Wardrobe } from 'ctsn/three';
 import { characterOf, skeletonOf } from './character.js';
@@ -45,7 +45,7 @@ test('covered skin is not drawn while the garment is worn, and shown again after
   const { model, character } = await figure();
   const mesh = await skinned(character);
   const before = mesh.geometry;
-  const covered = () => Uint8Array.from([1, 1, 1, 1, 0, 1]);
+  const covered = vi.fn(() => Uint8Array.from([1, 1, 1, 1, 0, 1]));
   const wardrobe = new Wardrobe(character, sources, { material, covered, fade: 0 });
   const drawn = () => [...mesh.geometry.index!.array.slice(0, mesh.geometry.drawRange.count)];
   await wardrobe.wear('shirt');
@@ -56,6 +56,16 @@ test('covered skin is not drawn while the garment is worn, and shown again after
   await wardrobe.wear([]);
   wardrobe.update();
   expect(drawn()).toEqual([0, 1, 2, 3, 4, 5]);
+  // What a file's garment covers is found out once, and anew for another file.
+  await wardrobe.wear('shirt');
+  wardrobe.update();
+  expect([drawn(), covered.mock.calls.length]).toEqual([[3, 4, 5], 1]);
+  await wardrobe.wear([]);
+  wardrobe.update();
+  covered.mockReturnValue(Uint8Array.from([0, 0, 0, 1, 1, 1]));
+  await wardrobe.stock('shirt', sources.shirt.slice()).wear('shirt');
+  wardrobe.update();
+  expect([drawn(), covered.mock.calls.length]).toEqual([[0, 1, 2], 2]);
   wardrobe.dispose();
   expect(mesh.geometry).toBe(before);
   model.dispose();

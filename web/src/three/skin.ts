@@ -1,4 +1,5 @@
 import { SkinnedMesh, type BufferGeometry } from 'three';
+import type { ModelSource } from '../load.js';
 import type { Character } from './bones.js';
 import type { Garment } from './garment.js';
 import type { WardrobeOptions } from './wardrobe.js';
@@ -9,6 +10,8 @@ export class Skin {
   /** Geometries of their own, since clones of a character share theirs; and those before. */
   readonly #before = new Map<SkinnedMesh, BufferGeometry>();
   readonly #covered = new WeakMap<Garment, Map<SkinnedMesh, Uint8Array>>();
+  /** The same by the garment's file: to find it out takes a twentieth of a second, in which a page stands still. */
+  readonly #known = new Map<ModelSource, Map<SkinnedMesh, Uint8Array>>();
   #hidden: readonly Garment[] = [];
 
   constructor(character: Character) {
@@ -19,11 +22,12 @@ export class Skin {
     this.#meshes = meshes;
   }
 
-  /** Finds out what a garment covers. */
-  async cover(garment: Garment, covered: WardrobeOptions['covered']): Promise<void> {
+  /** Finds out what a garment covers, once for each file. */
+  async cover(garment: Garment, source: ModelSource, covered: WardrobeOptions['covered']): Promise<void> {
     if (!covered) return;
-    const found = new Map<SkinnedMesh, Uint8Array>();
-    for (const mesh of this.#meshes) found.set(mesh, await covered(garment.cloth, mesh));
+    const found = this.#known.get(source) ?? new Map<SkinnedMesh, Uint8Array>();
+    for (const mesh of this.#meshes) if (!found.has(mesh)) found.set(mesh, await covered(garment.cloth, mesh));
+    this.#known.set(source, found);
     this.#covered.set(garment, found);
   }
 

@@ -184,9 +184,10 @@ export class Wardrobe<Name extends string = string> extends Group {
   /** Loads a garment and puts it on, unseen. */
   async #open(name: string, options: WearOptions): Promise<Garment> {
     const { load = openModel, material } = this.#options;
+    const source = this.#source(name);
     let garment: Garment | undefined;
     try {
-      const model = await load(this.#source(name), options);
+      const model = await load(source, options);
       try {
         options.signal?.throwIfAborted();
         const made = typeof material === 'function' ? material(name as Name) : material;
@@ -200,7 +201,7 @@ export class Wardrobe<Name extends string = string> extends Group {
       garment.rest = await restOf(garment.cloth.model);
       // A model in a worker, or on a GPU whose answers come late, has shown nothing yet.
       await garment.cloth.settled();
-      await this.#skin.cover(garment, this.#options.covered);
+      await this.#skin.cover(garment, source, this.#options.covered);
       options.signal?.throwIfAborted();
       return garment;
     } catch (error) {
