@@ -105,6 +105,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     println!("step 5 of 5: its errors");
     let [json, page] = ["report.json", "html"].map(|extension| output.with_extension(extension));
     let judged = evaluate::Arguments {
+        all: false,
         model: output.clone(),
         dataset: work.clone(),
         json: Some(json),

@@ -21,6 +21,10 @@ pub struct Arguments {
     pub model: PathBuf,
     /// Dataset folder
     pub dataset: PathBuf,
+    /// Judge every pose of the dataset, of which the model has learned nothing: another's dances, for example
+    /// (`ctsn motion CHARACTER --from OTHER`, then `ctsn simulate`)
+    #[arg(long)]
+    pub all: bool,
     /// Write all of it for programs, also by clip, joint and frame (JSON)
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
@@ -36,7 +40,8 @@ pub fn run(arguments: &Arguments) -> Result<()> {
 /// Judges the model; `around` gives what the page has before and after its figures.
 pub fn judge(arguments: &Arguments, around: impl FnOnce(&Report) -> Result<[Markup; 2]>) -> Result<()> {
     let (model, dataset) = (model(&arguments.model)?, Dataset::read(&arguments.dataset)?);
-    let report = judging::evaluate(&model, &dataset, Split::Test)?;
+    let split = if arguments.all { Split::All } else { Split::Test };
+    let report = judging::evaluate(&model, &dataset, split)?;
     if let Some(path) = &arguments.json {
         file::write(path, serde_json::to_string_pretty(&report)?.as_bytes())?;
     }

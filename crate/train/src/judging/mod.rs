@@ -128,6 +128,7 @@ pub fn unseen(dataset: &Dataset, split: Split) -> Result<Vec<&Sample>> {
             Split::Train => "poses to learn from",
             Split::Validation => "poses to validate",
             Split::Test => "unseen poses in the last tenth of the clips (with fewer than ten clips: of each)",
+            Split::All => "poses along the clips",
         };
         return Err(Error::Dataset(format!("wanted {wanted}, found none: {poses} poses of {clips} clips in all")));
     }

@@ -119,6 +119,16 @@ fn what_cannot_be_judged_is_named() {
 }
 
 #[test]
+fn data_that_nothing_was_learned_from_is_judged_whole() {
+    let dataset = dataset();
+    let report = evaluate(&model(&dataset), &dataset, Split::All).expect("a report");
+    let parts = [Split::Train, Split::Validation, Split::Test].map(|split| dataset.split(split).len());
+    assert!(parts.iter().all(|&part| part > 0), "{parts:?}");
+    assert_eq!(report.frames.len(), parts.iter().sum());
+    assert_eq!(report.frames.len(), dataset.samples.len());
+}
+
+#[test]
 fn folds_are_measured_against_those_of_the_truth() {
     let dataset = dataset();
     let judge = Judge::new(&dataset.setup).expect("a judge");

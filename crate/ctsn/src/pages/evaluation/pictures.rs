@@ -8,8 +8,8 @@ use ctsn_core::model::HostModel;
 use ctsn_rig::Result;
 use ctsn_rig::statistics::Sorted;
 use ctsn_rig::vertices;
-use ctsn_train::dataset::{Dataset, Sample, Split};
-use ctsn_train::judging::{FrameErrors, Judge, Report, predictions, unseen, vertex_errors};
+use ctsn_train::dataset::{Dataset, Sample};
+use ctsn_train::judging::{FrameErrors, Judge, Report, predictions, vertex_errors};
 use maud::{Markup, html};
 
 /// Clips of which the worst frame is shown.
@@ -53,11 +53,11 @@ impl Gallery {
     /// Draws the predictions of `model` for frames of `report`, which was made on `dataset`.
     pub fn new(model: &HostModel, dataset: &Dataset, report: &Report) -> Result<Self> {
         let judge = Judge::new(&dataset.setup)?;
-        let (all, clips) = (unseen(dataset, Split::Test)?, &dataset.setup.description.clips);
+        let clips = &dataset.setup.description.clips;
         let sample = |frame: &FrameErrors| {
             let same =
-                |sample: &&&Sample| (&clips[sample.record.clip], sample.record.frame) == (&frame.clip, frame.frame);
-            all.iter().find(same).copied()
+                |sample: &&Sample| (&clips[sample.record.clip], sample.record.frame) == (&frame.clip, frame.frame);
+            dataset.samples.iter().find(same)
         };
         let (chosen, samples): (Vec<usize>, Vec<&Sample>) =
             choose(report).into_iter().filter_map(|i| Some((i, sample(&report.frames[i])?))).unzip();
