@@ -4,6 +4,7 @@ import {
   PCFShadowMap,
   PerspectiveCamera,
   Scene,
+  Vector2,
   Vector3,
   WebGLRenderer,
   type Object3D,
@@ -75,6 +76,7 @@ export class Stage {
     this.scene.environment = createStudio();
     this.scene.environmentIntensity = 0.85;
     this.scene.add(this.#sun, this.#sun.target, this.floor);
+    this.#resize();
     new ResizeObserver(() => this.#resize()).observe(canvas);
     canvas.addEventListener('keydown', (event) => this.#press(event));
     this.look({ around: 14, up: 6, far: 2.5, lift: 0 });
@@ -208,14 +210,15 @@ export class Stage {
   #resize(): void {
     const { clientWidth: width, clientHeight: height } = this.#canvas;
     const { left, right, top, bottom } = this.#margins;
-    this.renderer.setSize(width, height, false);
+    // The same size again would be a new canvas, for which the page waits until the GPU has done all before.
+    const { x, y } = this.renderer.getSize(new Vector2());
+    if (x !== width || y !== height) this.renderer.setSize(width, height, false);
     this.#changed = true;
     this.camera.aspect = width / height;
     const free = { width: Math.max(width - left - right, 160), height: Math.max(height - top - bottom, 160) };
     // A figure with its arms out is about as wide as high; it may reach under the controls.
     const least = Math.min(free.height, 1.3 * free.width) / height;
     this.camera.fov = (360 / Math.PI) * Math.atan(Math.tan((FIELD * Math.PI) / 360) / least);
-    const [x, y] = [(right - left) / 2, (bottom - top) / 2];
-    this.camera.setViewOffset(width, height, x, y, width, height);
+    this.camera.setViewOffset(width, height, (right - left) / 2, (bottom - top) / 2, width, height);
   }
 }
