@@ -160,7 +160,10 @@ export class Stage {
    * page stands still meanwhile.
    */
   async prepare(object: Object3D): Promise<void> {
-    await this.renderer.compileAsync(object, this.camera, this.scene);
+    const { renderer, camera, scene } = this;
+    // Without that extension nothing tells when a program is there: three would warn, and not wait.
+    if (renderer.extensions.has('KHR_parallel_shader_compile')) await renderer.compileAsync(object, camera, scene);
+    else renderer.compile(object, camera, scene);
   }
 
   render(): void {

@@ -124,7 +124,7 @@ fn data_that_nothing_was_learned_from_is_judged_whole() {
     let report = evaluate(&model(&dataset), &dataset, Split::All).expect("a report");
     let parts = [Split::Train, Split::Validation, Split::Test].map(|split| dataset.split(split).len());
     assert!(parts.iter().all(|&part| part > 0), "{parts:?}");
-    assert_eq!(report.frames.len(), parts.iter().sum());
+    assert_eq!(report.frames.len(), parts.iter().sum::<usize>());
     assert_eq!(report.frames.len(), dataset.samples.len());
 }
 
