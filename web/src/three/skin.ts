@@ -31,6 +31,11 @@ export class Skin {
     this.#covered.set(garment, found);
   }
 
+  /** Forgets what the garment of a file covers, once nothing has that file any more. */
+  forget(source: ModelSource | undefined): void {
+    if (source !== undefined) this.#known.delete(source);
+  }
+
   /** Hides what these garments cover, and shows the rest. */
   hide(garments: readonly Garment[]): void {
     if (same(garments, this.#hidden)) return;

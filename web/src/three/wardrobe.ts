@@ -93,6 +93,7 @@ export class Wardrobe<Name extends string = string> extends Group {
 
   /** Has one garment more, or another model for one; what is worn keeps its own until it has been taken off. */
   stock<More extends string>(garment: More | Name, source: ModelSource): Wardrobe<Name | More> {
+    this.#skin.forget(this.#sources.get(garment));
     this.#sources.set(garment, source);
     return this as unknown as Wardrobe<Name | More>;
   }

@@ -9,6 +9,7 @@ const ATTRIBUTES = { position: 3, normal: 3, uv: 2, uv1: 2 };
 export class Samples {
   readonly #compile: (object: Object3D) => Promise<void>;
   readonly #geometry = new BufferGeometry();
+  readonly #materials = new Map<FabricName, FabricMaterial>();
   readonly #compiled = new Map<string, Promise<void>>();
 
   constructor(compile: (object: Object3D) => Promise<void>) {
@@ -27,7 +28,8 @@ export class Samples {
     const key: `${FabricName} ${boolean}` = `${look.fabric} ${transparent}`;
     let compiled = this.#compiled.get(key);
     if (!compiled) {
-      const material = new FabricMaterial(look);
+      const material = this.#materials.get(look.fabric) ?? new FabricMaterial(look);
+      this.#materials.set(look.fabric, material);
       const piece = new Mesh(this.#geometry, transparent ? Object.assign(material.clone(), { transparent }) : material);
       piece.receiveShadow = true;
       this.#compiled.set(key, (compiled = this.#compile(piece)));
