@@ -8,11 +8,15 @@ import { buildLibrary, relaxedSimd } from './library.mjs';
 import { at, main, need, run, say, Stop } from './step.mjs';
 import { ensureRust } from './toolchain.mjs';
 
+/** What failed, by name: said once more at the end, where the log of a run that was cut short is looked at. */
+const failed = [];
+
 /** `cargo test`, natively or in the browser: the sum of its result lines. */
 async function cargo(args, env = {}) {
   const { status, output } = await run('cargo', ['test', '--release', ...args], { tee: true, env });
   const lines = [...output.matchAll(/^test result: \w+\. (\d+) passed; (\d+) failed/gm)];
   const sum = (part) => lines.reduce((total, line) => total + Number(line[part]), 0);
+  failed.push(...[...output.matchAll(/^test (.+) \.\.\. FAIL(?:ED)?$/gm)].map(([, name]) => name));
   return settle(status, sum(1), sum(2));
 }
 
@@ -51,7 +55,11 @@ async function vitestWith([program, ...args], ...projects) {
   const { status } = await run(program, [...args, 'run', '--reporter=default', '--reporter=json', `--outputFile.json=${report}`,
     ...projects.flatMap((project) => ['--project', project])], { env: { CHROMIUM: chromium() } });
   if (!existsSync(report)) return settle(status || 1, 0, 0);
-  const { numPassedTests, numFailedTests } = JSON.parse(readFileSync(report, 'utf8'));
+  const { numPassedTests, numFailedTests, testResults } = JSON.parse(readFileSync(report, 'utf8'));
+  for (const { name, status, message, assertionResults } of testResults) {
+    const tests = assertionResults.filter((test) => test.status === 'failed').map((test) => test.fullName);
+    if (status === 'failed') failed.push(...(tests.length > 0 ? tests : [message]).map((test) => `${name}: ${test}`));
+  }
   return settle(status, numPassedTests, numFailedTests);
 }
 
@@ -129,6 +137,7 @@ await main(async () => {
   }
   console.table(results);
   const sum = (key) => results.reduce((total, result) => total + result[key], 0);
+  for (const name of failed) console.log(`failed: ${name}`);
   console.log(`${sum('passed')} passed, ${sum('failed')} failed`);
   if (sum('failed') > 0) process.exitCode = 1;
 });
