@@ -1,5 +1,7 @@
-// npm test: every suite, one after the other; a suite that cannot run has failed. Ends with the sum of all.
-import { existsSync, mkdirSync, readFileSync, rmSync } from 'node:fs';
+// npm test: every suite; a suite that cannot run has failed. Ends with the sum of all.
+//   npm test -- Node    those whose names begin so
+import { existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { fileURLToPath } from 'node:url';
 import { chromedriver, chromium, firefox, vulkan, webkitDriver, xvfb } from './browser.mjs';
 import { tested } from './environments.mjs';
 import { tryExamples } from './examples.mjs';
@@ -109,7 +111,7 @@ const suites = {
   'Node 20, 22, 24: the npm package': () => each(nodes, vitestOn),
   'Chromium, Firefox, WebKit: the npm package': () => vitest('engines'),
   'browser: examples from the packed tarball': () => tryExamples(tested),
-  'Node: the exported network in onnxruntime': async () => {
+  'onnxruntime: the exported network': async () => {
     await buildCommand();
     return vitest('onnx');
   },
@@ -120,21 +122,53 @@ const suites = {
   },
 };
 
-await main(async () => {
-  for (const find of [chromium, chromedriver, firefox, webkitDriver, xvfb]) find();
-  await ensureRust();
-  mkdirSync(at('out'), { recursive: true });
+/** Runs the suites of those names one after the other: a row of the table for each. */
+async function runSuites(names) {
   const results = [];
-  for (const [name, suite] of Object.entries(suites)) {
+  for (const name of names) {
     say(name);
     const started = Date.now();
-    const result = await suite().catch((error) => {
+    const result = await suites[name]().catch((error) => {
       if (!(error instanceof Stop)) throw error;
       console.error(`ctsn: ${error.message}`);
       return settle(1, 0, 0);
     });
     results.push({ suite: name, ...result, seconds: Math.round((Date.now() - started) / 1000) });
   }
+  return results;
+}
+
+/** Where a run of the suites whose names begin so leaves what it found. */
+const findings = (beginning) => at('out', `tests${beginning}.json`);
+
+/** The same in a process of its own, for suites that keep one core busy beside those that keep one: shown at its end. */
+async function runBeside(beginning) {
+  rmSync(findings(beginning), { force: true });
+  const { output } = await run(process.execPath, [fileURLToPath(import.meta.url), beginning], { capture: true });
+  console.log(output);
+  if (existsSync(findings(beginning))) return JSON.parse(readFileSync(findings(beginning), 'utf8'));
+  return { results: [{ suite: beginning, ...settle(1, 0, 0), seconds: 0 }], failed: [] };
+}
+
+/** All suites: those of Node beside those of cargo, and what draws and measures after both. */
+async function runAll() {
+  const names = Object.keys(suites);
+  const ofNode = names.filter((name) => name.startsWith('Node'));
+  const [first, last] = [names.slice(0, names.indexOf(ofNode[0])), names.slice(names.indexOf(ofNode.at(-1)) + 1)];
+  const [results, beside] = await Promise.all([runSuites(first), runBeside('Node')]);
+  failed.push(...beside.failed);
+  return [...results, ...beside.results, ...(await runSuites(last))];
+}
+
+await main(async () => {
+  for (const find of [chromium, chromedriver, firefox, webkitDriver, xvfb]) find();
+  await ensureRust();
+  mkdirSync(at('out'), { recursive: true });
+  const beginning = process.argv[2] ?? '';
+  const names = Object.keys(suites).filter((name) => name.startsWith(beginning));
+  if (names.length === 0) throw new Stop(`no suite begins with ${beginning}; wanted one of:\n${Object.keys(suites).join('\n')}`);
+  const results = beginning ? await runSuites(names) : await runAll();
+  writeFileSync(findings(beginning), JSON.stringify({ results, failed }));
   console.table(results);
   const sum = (key) => results.reduce((total, result) => total + result[key], 0);
   for (const name of failed) console.log(`failed: ${name}`);

@@ -39,7 +39,7 @@ function coarseFirst(): { bytes: Uint8Array; ends: number[]; coarse: number } {
 
 type To = ReadableStreamDefaultController<Uint8Array>;
 
-/** A server of one file, sent as the test says: what is next is done when all that was sent before it has been taken. */
+/** A server of one file, sent as the test says: what is next waits until all that was sent before has been taken. */
 function serve(): { send(bytes: Uint8Array): void; end(): void; cut(): void; signal(): AbortSignal | undefined; asked(): number } {
   const acts: ((to: To) => void)[] = [];
   let wake = (): void => undefined;
