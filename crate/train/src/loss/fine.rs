@@ -14,7 +14,7 @@ pub(super) const FINE: Term = Term {
     new: |_| Ok(Some(Box::new(Fine))),
 };
 
-struct Fine;
+pub(super) struct Fine;
 
 impl Loss for Fine {
     fn target(&self, truth: &[f32]) -> Vec<f32> {

@@ -4,11 +4,14 @@
 
 mod coarse;
 mod contact;
+mod curvature;
 mod distance;
 mod energy;
 mod fine;
 mod penetration;
 mod smooth;
+#[cfg(test)]
+mod tests;
 
 use crate::Result;
 use crate::dataset::Setup;
@@ -17,7 +20,8 @@ use ctsn_core::model::HostModel;
 use ctsn_core::pose::BodyFrame;
 
 /// Every loss of a training on simulated poses.
-pub const LOSSES: &[Term] = &[coarse::COARSE, fine::FINE, penetration::PENETRATION, energy::TENSION];
+pub const LOSSES: &[Term] =
+    &[coarse::COARSE, fine::FINE, curvature::CURVATURE, penetration::PENETRATION, energy::TENSION];
 
 /// Every loss of a training without truth: the sum is what a simulation minimises.
 pub const SELF_SUPERVISED: &[Term] = &[energy::ENERGY, contact::CONTACT];
