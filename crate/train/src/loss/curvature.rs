@@ -9,7 +9,7 @@ pub(super) const CURVATURE: Term = Term {
     name: "curvature",
     title: "curvature, poses learned from",
     unit: "m",
-    weight: 3.0,
+    weight: 2.0,
     constants: &[],
     simulated: &[Prediction::Whole],
     unsimulated: &[],
