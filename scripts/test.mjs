@@ -141,7 +141,7 @@ async function runSuites(names) {
 /** Where a run of the suites whose names begin so leaves what it found. */
 const findings = (beginning) => at('out', `tests${beginning}.json`);
 
-/** The same in a process of its own, for suites that keep one core busy beside those that keep one: shown at its end. */
+/** The same in a process of its own, for suites that keep one core beside others that do: shown at its end. */
 async function runBeside(beginning) {
   rmSync(findings(beginning), { force: true });
   const { output } = await run(process.execPath, [fileURLToPath(import.meta.url), beginning], { capture: true });
