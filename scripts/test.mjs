@@ -168,7 +168,7 @@ await main(async () => {
   const names = Object.keys(suites).filter((name) => name.startsWith(beginning));
   if (names.length === 0) throw new Stop(`no suite begins with ${beginning}; wanted one of:\n${Object.keys(suites).join('\n')}`);
   const results = beginning ? await runSuites(names) : await runAll();
-  writeFileSync(findings(beginning), JSON.stringify({ results, failed }));
+  if (beginning) writeFileSync(findings(beginning), JSON.stringify({ results, failed }));
   console.table(results);
   const sum = (key) => results.reduce((total, result) => total + result[key], 0);
   for (const name of failed) console.log(`failed: ${name}`);
