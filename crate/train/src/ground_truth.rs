@@ -18,7 +18,7 @@ use crate::judging::check_joints;
 use crate::{Error, Result};
 pub use adopted::adopt;
 use ctsn_cloth::simulate::{Outcome, Simulator};
-use ctsn_rig::mixed::{has_limbs, mixed};
+use ctsn_rig::mixed::Mixer;
 use ctsn_rig::path::is_sound;
 use ctsn_rig::{Character, Pose, joints, numbers, vertices};
 use glam::DVec3;
@@ -57,6 +57,7 @@ pub struct Run<'a> {
     folder: PathBuf,
     simulator: Simulator,
     teacher: Option<Teacher<'a>>,
+    mixer: Option<Mixer>,
     /// `T_C` as the setup keeps it, metres [n].
     template: Vec<DVec3>,
     tasks: Vec<Task>,
@@ -73,8 +74,8 @@ impl<'a> Run<'a> {
             let reason = format!("{name} has no clip, wanted at least one: there is no pose to simulate");
             return Err(Error::Simulation(reason));
         }
-        let mixable = || has_limbs(request.character) && !learned(request.character).is_empty();
-        if request.mixed > 0 && !mixable() {
+        let mixer = Mixer::new(request.character, learned(request.character));
+        if request.mixed > 0 && mixer.is_none() {
             let name = request.names[0];
             let reason = format!(
                 "{name} has nothing to mix: wanted limbs, two chains of joints at least, and frames to learn from"
@@ -103,7 +104,16 @@ impl<'a> Run<'a> {
         let mut tasks = tasks(&request, poses, folder);
         let all = tasks.len();
         tasks.retain(|task| !task.path.exists());
-        Ok(Self { found: all - tasks.len(), request, folder: folder.to_owned(), simulator, teacher, template, tasks })
+        Ok(Self {
+            found: all - tasks.len(),
+            request,
+            folder: folder.to_owned(),
+            simulator,
+            teacher,
+            mixer,
+            template,
+            tasks,
+        })
     }
 
     /// Poses, twins and mixed poses left to simulate.
@@ -115,17 +125,16 @@ impl<'a> Run<'a> {
     pub fn simulate(&self, until: Option<Instant>, progress: impl Fn(&Record, Kind) + Sync) -> Result<()> {
         let timing = Timing::open(&self.folder, self.request.shard)?;
         let character = self.request.character;
-        let learned = learned(character);
         let run = |task: &Task| -> Result<()> {
             if until.is_some_and(|until| Instant::now() >= until) {
                 return Ok(());
             }
             let start = Stopwatch::start();
             let frame = || &character.clips[task.clip].poses[task.frame];
-            let pose = match task.kind {
-                Kind::Frame => frame().clone(),
-                Kind::Twin => noise::turned(character, frame(), task.clip, task.frame),
-                Kind::Mixed => mixed(character, &learned, task.frame),
+            let pose = match (task.kind, &self.mixer) {
+                (Kind::Mixed, Some(mixer)) => mixer.pose(task.frame),
+                (Kind::Twin, _) => noise::turned(character, frame(), task.clip, task.frame),
+                _ => frame().clone(),
             };
             let outcome = self.outcome(&pose);
             let record = Record::new(task.clip, task.frame, &outcome);
@@ -150,13 +159,13 @@ impl<'a> Run<'a> {
 }
 
 /// The frames to train on. Mixed poses are made of these alone, so that unseen frames stay unseen.
-fn learned(character: &Character) -> Vec<&Pose> {
+fn learned(character: &Character) -> Vec<Pose> {
     let clips = &character.clips;
     let train =
         |clip: usize, frame: usize| Split::of(clips.len(), clip, frame, clips[clip].poses.len()) == Split::Train;
     let frames = |clip: usize| clips[clip].poses.iter().enumerate().filter(move |(frame, _)| train(clip, *frame));
     let frames = (0..clips.len()).flat_map(frames).map(|(_, pose)| pose);
-    frames.filter(|pose| is_sound(character, pose)).collect()
+    frames.filter(|pose| is_sound(character, pose)).cloned().collect()
 }
 
 /// The poses and twins of the request's shard, in [`order`], its mixed poses evenly among them.

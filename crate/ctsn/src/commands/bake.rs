@@ -22,7 +22,8 @@ use std::time::{Duration, Instant};
 /// First a few poses are simulated along a path each, and a first model is trained on them: it is usable from then on.
 /// All others are relaxed from what it predicts, which is faster and chooses folds that a network can learn; on all of
 /// them the final model is trained. To the character's own clips, motion is generated where its skeleton has a known
-/// form, and poses are mixed. The unseen tenth is the end of that list: generated clips, where there are any.
+/// form, and two poses are mixed for every frame. The unseen tenth is the end of the list of clips: generated ones,
+/// where there are any.
 ///
 /// The whole takes an hour (--time-budget), or as long as it takes with --epochs: then the result does not depend on
 /// the machine's speed. Intermediate results are kept in a folder beside the model (MODEL.work), from which an
@@ -59,6 +60,10 @@ const SHARES: [f64; 4] = [0.17, 0.05, 0.53, 0.22];
 /// poses there are at least.
 const FIRST: usize = 5;
 const FEWEST: usize = 60;
+/// Mixed poses for each frame. Of a stranger's T-shirt 180 poses were learned from, and another's dances judged: with a
+/// third of them mixed, their joints not turned further, E_dist was 17.5 mm; turned by up to 15° 14.9 mm; with two
+/// thirds mixed, by up to 30° 13.7 mm, by up to 45° 13.9 mm.
+const MIXED: usize = 2;
 /// Poses by which the time of one is measured.
 const TIMED: usize = 6;
 
@@ -77,7 +82,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let frames = options.poses.unwrap_or(frames).min(frames);
     ensure!(frames >= POSES, "wanted at least {POSES} poses to learn from, found {frames} in the clips and --poses");
     let mixable = options.mixed == 0 && has_limbs(&character);
-    let mixed = if mixable { frames / 2 } else { options.mixed };
+    let mixed = if mixable { frames * MIXED } else { options.mixed };
 
     let steps = Steps { character: &character, arguments, garment: &garment, budget, begun: Instant::now() };
     let first = work.join("first.safetensors");

@@ -4,10 +4,10 @@
 use crate::Result;
 use crate::dataset::{Dataset, Sample, paths, pose_path};
 use crate::judging::differences;
+use ctsn_rig::mixed::turn;
 use ctsn_rig::path::to_body_frame;
 use ctsn_rig::statistics::Sorted;
 use ctsn_rig::{Character, Mesh, Pose, SkinnedMesh, pose, vertices};
-use glam::{DAffine3, DQuat, DVec3};
 use serde::Serialize;
 use std::path::Path;
 
@@ -44,13 +44,8 @@ pub(super) fn turned(character: &Character, pose: &Pose, clip: usize, frame: usi
     let mut rng = fastrand::Rng::with_seed(((clip as u64) << 32) + frame as u64);
     let mut twin = Pose::with_capacity(pose.len());
     for (joint, world) in character.joints.iter().zip(pose) {
-        // Uniform on the sphere: height and longitude.
-        let (height, longitude) = (2.0 * rng.f64() - 1.0, std::f64::consts::TAU * rng.f64());
-        let across = (1.0 - height * height).sqrt();
-        let axis = DVec3::new(across * longitude.cos(), height, across * longitude.sin());
-        let turn = DAffine3::from_quat(DQuat::from_axis_angle(axis, DEGREES.to_radians()));
         let moved = joint.parent.map_or(*world, |parent| twin[parent] * pose[parent].inverse() * *world);
-        twin.push(moved * turn);
+        twin.push(moved * turn(&mut rng, DEGREES.to_radians()));
     }
     twin
 }

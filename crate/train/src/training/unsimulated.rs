@@ -1,4 +1,4 @@
-//! Poses that nobody simulated: [`mixed`] anew for every step, for losses that need no truth.
+//! Poses that nobody simulated: mixed anew for every step, for losses that need no truth.
 
 use super::Settings;
 use super::item::Item;
@@ -8,9 +8,9 @@ use crate::dataset::{Sample, Setup};
 use crate::loss::{Prediction, Term};
 use ctsn_core::model::HostModel;
 use ctsn_core::network::Streams;
-use ctsn_rig::mixed::{has_limbs, mixed};
+use ctsn_rig::mixed::Mixer;
 use ctsn_rig::path::is_sound;
-use ctsn_rig::{Character, Pose, joints, pose};
+use ctsn_rig::{joints, pose};
 use rayon::prelude::*;
 
 /// Unsimulated poses for each of a batch. (Of a skirt in unseen poses, one for each leaves 0.96 % inside the body, four
@@ -20,8 +20,7 @@ pub(super) const EACH: usize = 4;
 /// Where they come from.
 pub(super) struct Unsimulated {
     pub recording: Recording,
-    character: Character,
-    frames: Vec<Pose>,
+    mixer: Mixer,
     seed: u64,
     /// Poses for each step.
     count: usize,
@@ -46,21 +45,18 @@ impl Unsimulated {
         };
         let character = setup.character()?;
         let poses = samples.iter().map(|sample| pose(&sample.joints));
-        let frames: Vec<Pose> = poses.filter(|pose| is_sound(&character, pose)).collect();
-        if frames.is_empty() || !has_limbs(&character) {
-            return Ok(None);
-        }
-        let (recording, ..) = Recording::new(model, variant, streams);
-        Ok(Some(Self { recording, character, frames, seed, count: batch * EACH }))
+        let frames = poses.filter(|pose| is_sound(&character, pose)).collect();
+        let made =
+            |mixer| Self { recording: Recording::new(model, variant, streams).0, mixer, seed, count: batch * EACH };
+        Ok(Mixer::new(&character, frames).map(made))
     }
 
     /// The poses for optimisation step `step`, the same ones whenever they are asked for.
     pub fn draw(&self, model: &HostModel, step: usize) -> Result<Vec<Item>> {
-        let frames: Vec<&Pose> = self.frames.iter().collect();
         // Other numbers than those of simulated mixtures, which start at nought.
         let first = (self.seed as usize).wrapping_add(1) << 40;
         let item = |i| {
-            let pose = mixed(&self.character, &frames, first | (step * self.count + i));
+            let pose = self.mixer.pose(first | (step * self.count + i));
             Item::posed(model, &joints(&pose))
         };
         (0..self.count).into_par_iter().map(item).collect()
