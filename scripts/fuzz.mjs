@@ -1,8 +1,9 @@
 // npm run fuzz: random input, led by the branches that it reaches, for what reads files and poses. What panics, hangs
 // or is not finite is kept in out/fuzz and ends the run.
-//   npm run fuzz -- --minutes 10        all targets, so long together
+//   npm run fuzz -- --minutes 10        all targets, so many minutes of one core together
 //   npm run fuzz -- --minutes 10 gltf   one of them: safetensors, model, pose, gltf
 import { mkdirSync } from 'node:fs';
+import { availableParallelism } from 'node:os';
 import { fileURLToPath } from 'node:url';
 import { parseArgs } from 'node:util';
 import { at, main, need, run, say, Stop } from './step.mjs';
@@ -27,7 +28,7 @@ export async function fuzz(targets, seconds) {
   await need('cargo', ['build', '--release', '--locked', '--manifest-path', at('tests', 'fuzz', 'Cargo.toml'), '--target', host,
     '--target-dir', folder], { env: { RUSTFLAGS: COUNTERS.join(' ') } });
   const counts = {};
-  for (const target of targets) {
+  const one = async (target) => {
     say(`random input for ${target}, ${Math.round(seconds)} s`);
     const [found, corpus] = [at('out', 'fuzz', target), at('tests', 'fuzz', 'corpus', target)];
     mkdirSync(`${found}/corpus`, { recursive: true });
@@ -36,7 +37,13 @@ export async function fuzz(targets, seconds) {
     if (status !== 0) throw new Stop(`${target}: an input in ${found} is not borne:\n${output.slice(-2000)}`);
     counts[target] = Number(/stat::number_of_executed_units:\s*(\d+)/.exec(output)[1]);
     say(`${target}: ${counts[target]} inputs borne`);
-  }
+  };
+  // Each keeps one core.
+  const left = [...targets];
+  const work = async () => {
+    for (let target = left.shift(); target; target = left.shift()) await one(target);
+  };
+  await Promise.all(Array.from({ length: availableParallelism() }, work));
   return counts;
 }
 

@@ -23,31 +23,27 @@ fn kind(kind: Kind) -> Cut {
     Cut { kind: Some(kind), ..Cut::default() }
 }
 
-#[test]
-fn every_kind_has_its_own_openings_and_reach() {
+/// Makes a kind for the person: worn, with so many openings; heights of hem and top; pinned by a waistband or not.
+fn made(what: Kind, loops: usize, bottom: [f64; 2], top: [f64; 2], pinned: bool) -> Garment {
     let person = person();
-    // Kind, openings, height of the hem and of the top.
-    let wanted = [
-        (Kind::Tshirt, 4, [0.75, 0.95], [1.4, 1.6]),
-        (Kind::Dress, 4, [0.4, 0.65], [1.4, 1.6]),
-        (Kind::Skirt, 2, [0.4, 0.65], [0.95, 1.15]),
-        (Kind::Robe, 4, [0.08, 0.3], [1.4, 1.6]),
-        (Kind::Cape, 1, [0.2, 0.5], [1.3, 1.6]),
-        (Kind::Trousers, 3, [0.05, 0.25], [0.95, 1.15]),
-    ];
-    for (what, loops, bottom, top) in wanted {
-        let garment = shell(&person, &kind(what)).unwrap();
-        let (low, high) = bounds_of(&garment);
-        assert_wearable(&person, &garment, loops, 1.78 / 200.0);
-        assert!((bottom[0]..bottom[1]).contains(&low.y) && (top[0]..top[1]).contains(&high.y), "{what:?} {low} {high}");
-        let pinned = [Kind::Skirt, Kind::Robe, Kind::Trousers, Kind::Cape].contains(&what);
-        assert_eq!(pinned, !garment.pins.is_empty(), "{what:?}");
-    }
+    let garment = shell(&person, &kind(what)).unwrap();
+    let (low, high) = bounds_of(&garment);
+    assert_wearable(&person, &garment, loops, 1.78 / 200.0);
+    assert!((bottom[0]..bottom[1]).contains(&low.y) && (top[0]..top[1]).contains(&high.y), "{what:?} {low} {high}");
+    assert_eq!(pinned, !garment.pins.is_empty(), "{what:?}");
+    garment
+}
+
+#[test]
+fn shirt_dress_and_trousers_have_their_own_openings_and_reach() {
+    made(Kind::Tshirt, 4, [0.75, 0.95], [1.4, 1.6], false);
+    made(Kind::Dress, 4, [0.4, 0.65], [1.4, 1.6], false);
+    made(Kind::Trousers, 3, [0.05, 0.25], [0.95, 1.15], true);
 }
 
 #[test]
 fn a_skirt_is_one_tube_that_widens_and_its_waistband_is_pinned() {
-    let garment = shell(&person(), &kind(Kind::Skirt)).unwrap();
+    let garment = made(Kind::Skirt, 2, [0.4, 0.65], [0.95, 1.15], true);
     let (low, high) = bounds_of(&garment);
     let ring = |y: f64| garment.mesh.positions.iter().filter(move |p| (p.y - y).abs() < 0.03);
     let width = |y: f64| ring(y).fold(0.0, |width: f64, p| width.max(p.x.abs()));
@@ -60,12 +56,11 @@ fn a_skirt_is_one_tube_that_widens_and_its_waistband_is_pinned() {
 
 #[test]
 fn a_robes_sleeves_are_wide_and_a_cape_leaves_the_front_open() {
-    let person = person();
-    let robe = shell(&person, &kind(Kind::Robe)).unwrap();
+    let robe = made(Kind::Robe, 4, [0.08, 0.3], [1.4, 1.6], true);
     let cuff = robe.mesh.positions.iter().filter(|p| p.x > 0.48);
     let (low, high) = cuff.fold((f64::MAX, f64::MIN), |(low, high), p| (low.min(p.y), high.max(p.y)));
     assert!(high - low > 0.14, "a cuff {low} to {high}, the arm is 0.09 thick");
-    let cape = shell(&person, &kind(Kind::Cape)).unwrap();
+    let cape = made(Kind::Cape, 1, [0.2, 0.5], [1.3, 1.6], true);
     // The person has no feet: either side may be the front, but only one is covered.
     let side = |sign: f64| cape.mesh.positions.iter().filter(|p| p.y < 1.2 && sign * p.z > 0.1).count();
     assert!(side(1.0).min(side(-1.0)) == 0 && side(1.0).max(side(-1.0)) > 500, "{} {}", side(1.0), side(-1.0));

@@ -247,7 +247,7 @@ fn moving(arguments: &Arguments) -> Result<Character> {
     arguments.joints.tell(&mut character)?;
     match clips(&character, options.rate) {
         Ok(clips) => {
-            motion::say(&character);
+            motion::say(path, &character);
             let known: Vec<String> = character.clips.iter().map(|clip| clip.name.clone()).collect();
             character.clips.extend(clips.into_iter().filter(|clip| !known.contains(&clip.name)));
             println!(

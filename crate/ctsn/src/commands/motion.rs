@@ -68,10 +68,10 @@ fn tell(path: &Path, character: &mut Character) -> Result<()> {
 }
 
 /// Says which joints were taken for which parts, where a body was read.
-pub fn say(character: &Character) {
+pub fn say(path: &Path, character: &Character) {
     let (kind, reading) = Reading::nearest(character);
     if reading.missing().is_empty() {
-        println!("a body with {kind}: {reading}");
+        println!("{}: a body with {kind}: {reading}", super::file_name(path));
     }
 }
 
@@ -82,7 +82,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         None => motion::clips(&character, arguments.rate)?,
         Some(path) => taken(path, &character, arguments.rate)?,
     };
-    say(&character);
+    say(&arguments.character, &character);
     gltf::write_character(&arguments.output, &character, &gltf::Appearance::default())?;
     super::list_clips(&arguments.output, &character);
     Ok(())
@@ -94,6 +94,6 @@ fn taken(path: &Path, character: &Character, rate: f64) -> Result<Vec<Clip>> {
     if other.clips.is_empty() {
         bail!("{} has no clip, wanted at least one", path.display());
     }
-    say(&other);
+    say(path, &other);
     Ok(retarget(&other, character)?)
 }
