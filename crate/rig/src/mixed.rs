@@ -1,7 +1,7 @@
 //! Poses between the clips and around them: limbs of some frames on the trunk of another, every joint turned further.
 //! Cloth on an arm hears little of the legs, but what all clips do together, a network takes for a law: poses that part
-//! what the clips join teach it better than more frames of the same clips. What no clip does, such as a shrug, it learns
-//! from the turns.
+//! what the clips join teach it better than more frames of the same clips. What no clip does, such as a shrug, is
+//! learned from the turns.
 
 use crate::{Character, Pose, limbs};
 use glam::{DAffine3, DQuat, DVec3};

@@ -59,8 +59,9 @@ pub struct Options {
     /// Simulate only this many of the frames, evenly spread over the clips; a greater number adds to them. Default: all
     #[arg(long, value_name = "N")]
     pub poses: Option<usize>,
-    /// Simulate this many mixed poses as well: limbs of some training frames on the trunk of another, every joint turned
-    /// further by up to 30°. Variety teaches more than further frames of the same motion. A greater number adds to them
+    /// Simulate this many mixed poses as well: limbs of some training frames on the trunk of another, every joint
+    /// turned further by up to 30°. Variety teaches more than further frames of the same motion. A greater number adds
+    /// to them
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub mixed: usize,
     /// Clip to use, by name; may be given several times. Default: all
