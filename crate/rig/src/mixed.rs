@@ -1,4 +1,4 @@
-//! Poses between the clips and around them: limbs of some frames on the trunk of another, every joint turned further.
+//! Poses between the clips and around them: limbs of some frames on the trunk of another, joints turned further.
 //! Cloth on an arm hears little of the legs, but what all clips do together, a network takes for a law: poses that part
 //! what the clips join teach it better than more frames of the same clips. What no clip does, such as a shrug, is
 //! learned from the turns.
@@ -8,14 +8,14 @@ use glam::{DAffine3, DQuat, DVec3};
 
 /// Chance that a limb moves as in another frame than what it hangs from.
 const ELSEWHERE: f64 = 0.5;
-/// Greatest turn of a joint beyond its frame, radians.
-const FURTHER: f64 = std::f64::consts::FRAC_PI_6;
 /// A joint whose axes differ by less than this in all frames is held still: a helper, or a finger.
 const STILL: f64 = 0.02;
 
 /// Makes poses of frames.
 pub struct Mixer {
     frames: Vec<Pose>,
+    /// Greatest turn of a joint beyond its frame, radians.
+    further: f64,
     parents: Vec<Option<usize>>,
     /// Whether a joint has siblings, whether it begins a limb, and whether it is turned further.
     siblings: Vec<bool>,
@@ -24,8 +24,9 @@ pub struct Mixer {
 }
 
 impl Mixer {
-    /// For sound frames of `character`; `None` without frames, or where there are no limbs to mix.
-    pub fn new(character: &Character, frames: Vec<Pose>) -> Option<Self> {
+    /// For sound frames of `character`, whose joints are turned by up to `further` radians more; `None` without frames,
+    /// or where there are no limbs to mix.
+    pub fn new(character: &Character, frames: Vec<Pose>, further: f64) -> Option<Self> {
         let limbs = limbs_of(character);
         let first = frames.first().filter(|_| limbs.contains(&true))?;
         let parents: Vec<_> = character.joints.iter().map(|joint| joint.parent).collect();
@@ -39,11 +40,11 @@ impl Mixer {
             joints.map(|(joint, parent)| parent.is_some_and(|parent| what(joint, parent))).collect()
         };
         let (siblings, turned) = (of(&|_, parent| siblings(parent)), of(&turned));
-        Some(Self { siblings, limbs, turned, parents, frames })
+        Some(Self { siblings, limbs, turned, parents, frames, further })
     }
 
     /// Mixed pose number `number`: every limb is drawn anew or moves with what it hangs from, and whatever moves in the
-    /// frames is turned by up to [`FURTHER`] about any axis. The same number gives the same pose.
+    /// frames is turned further about any axis. The same number gives the same pose.
     pub fn pose(&self, number: usize) -> Pose {
         let [mut rng, mut turns] = [number as u64, !number as u64].map(fastrand::Rng::with_seed);
         let trunk = &self.frames[rng.usize(..self.frames.len())];
@@ -57,9 +58,9 @@ impl Mixer {
             // Exactly the frame's own transform as long as nothing above it was taken from elsewhere.
             let moved = parent.filter(|parent| pose[*parent] != from[*parent]);
             let placed = moved.map_or(from[joint], |parent| pose[parent] * from[parent].inverse() * from[joint]);
-            let angle = FURTHER * turns.f64();
+            let angle = self.further * turns.f64();
             let further = turn(&mut turns, angle);
-            pose.push(if self.turned[joint] { placed * further } else { placed });
+            pose.push(if self.turned[joint] && self.further > 0.0 { placed * further } else { placed });
             source.push(from);
         }
         pose
@@ -130,7 +131,7 @@ mod tests {
     #[test]
     fn limbs_of_other_frames_keep_their_bends_and_stay_whole() {
         let (mut character, frames) = scene();
-        let mixer = Mixer { turned: vec![false; 8], ..Mixer::new(&character, frames.clone()).expect("limbs") };
+        let mixer = Mixer::new(&character, frames.clone(), 0.0).expect("limbs");
         let mut seen = std::collections::BTreeSet::new();
         for number in 0..1000 {
             let pose = mixer.pose(number);
@@ -142,10 +143,10 @@ mod tests {
         }
         assert_eq!(seen.len(), 27, "every mixture of three frames");
         assert!(has_limbs(&character));
-        assert!(Mixer::new(&character, Vec::new()).is_none(), "no frames");
+        assert!(Mixer::new(&character, Vec::new(), 0.0).is_none(), "no frames");
         character.joints[3].parent = Some(2);
         assert!(!has_limbs(&character), "a chain, a helper and an obstacle");
-        assert!(Mixer::new(&character, frames).is_none(), "no limbs");
+        assert!(Mixer::new(&character, frames, 0.0).is_none(), "no limbs");
     }
 
     #[test]
@@ -153,7 +154,8 @@ mod tests {
         let (character, mut frames) = scene();
         // A helper that never bends.
         frames.iter_mut().for_each(|frame| frame[5] = frame[1] * DAffine3::from_translation(DVec3::Y));
-        let mixer = Mixer::new(&character, frames.clone()).expect("limbs");
+        let further = 0.5;
+        let mixer = Mixer::new(&character, frames.clone(), further).expect("limbs");
         assert_eq!(mixer.turned, [false, true, true, true, true, false, false, true]);
         let mut greatest: f64 = 0.0;
         for pose in (0..1000).map(|number| mixer.pose(number)) {
@@ -164,13 +166,13 @@ mod tests {
                     DQuat::from_mat3(&turn).to_axis_angle().1
                 };
                 let least = frames.iter().map(angle).fold(f64::INFINITY, f64::min);
-                assert!(least <= FURTHER + 1e-9, "joint {joint} is {least} from all frames");
+                assert!(least <= further + 1e-9, "joint {joint} is {least} from all frames");
                 assert!(found.translation.abs_diff_eq(DVec3::Y, 1e-12), "joint {joint} moved to {}", found.translation);
                 greatest = greatest.max(least);
             }
             assert!(local(&character, &pose, 5).abs_diff_eq(DAffine3::from_translation(DVec3::Y), 1e-12), "a helper");
             assert_eq!(bend(&character, &frames, &pose, 6), bend(&character, &frames, &pose, 0), "an obstacle");
         }
-        assert!(greatest > 0.6 * FURTHER, "turned by {greatest} at most");
+        assert!(greatest > 0.6 * further, "turned by {greatest} at most");
     }
 }

@@ -32,6 +32,9 @@ use teacher::Teacher;
 pub use timing::Log;
 use timing::{Stopwatch, Timing};
 
+/// Greatest turn of a joint of a mixed pose beyond its frame, radians: 30°.
+const FURTHER: f64 = std::f64::consts::FRAC_PI_6;
+
 /// Kinds of poses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
@@ -74,7 +77,7 @@ impl<'a> Run<'a> {
             let reason = format!("{name} has no clip, wanted at least one: there is no pose to simulate");
             return Err(Error::Simulation(reason));
         }
-        let mixer = Mixer::new(request.character, learned(request.character));
+        let mixer = Mixer::new(request.character, learned(request.character), FURTHER);
         if request.mixed > 0 && mixer.is_none() {
             let name = request.names[0];
             let reason = format!(

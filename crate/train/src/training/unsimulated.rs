@@ -48,7 +48,8 @@ impl Unsimulated {
         let frames = poses.filter(|pose| is_sound(&character, pose)).collect();
         let made =
             |mixer| Self { recording: Recording::new(model, variant, streams).0, mixer, seed, count: batch * EACH };
-        Ok(Mixer::new(&character, frames).map(made))
+        // What was simulated of mixed poses is turned further already.
+        Ok(Mixer::new(&character, frames, 0.0).map(made))
     }
 
     /// The poses for optimisation step `step`, the same ones whenever they are asked for.
