@@ -60,9 +60,8 @@ const SHARES: [f64; 4] = [0.17, 0.05, 0.53, 0.22];
 /// poses there are at least.
 const FIRST: usize = 5;
 const FEWEST: usize = 60;
-/// Mixed poses for each frame. Of a stranger's T-shirt 180 poses were learned from, and another's dances judged: with a
-/// third of them mixed, their joints not turned further, E_dist was 17.5 mm; turned by up to 15° 14.9 mm; with two
-/// thirds mixed, by up to 30° 13.7 mm, by up to 45° 13.9 mm.
+/// Mixed poses for each frame. Of a stranger's T-shirt 180 poses were simulated, and another's dances judged: with a
+/// third of them mixed E_dist was 17.5 mm, with two thirds, turned further, 12.6 mm (docs/decisions/poses.md).
 const MIXED: usize = 2;
 /// Poses by which the time of one is measured.
 const TIMED: usize = 6;

@@ -29,7 +29,10 @@ fn a_teacher_learns_where_cloth_is_and_how_it_folds() {
     let rows: Vec<Row> = (0..settings.epochs).map(|_| trainer.round(&samples).unwrap()).collect();
     // Both at once: the truth of this scene is inside the body, where contact does not let the cloth go.
     for (name, share) in [("smooth", 0.95), ("energy", 0.95)] {
-        let [first, last] = [0, settings.epochs - 1].map(|epoch| rows[epoch].loss(name).unwrap());
+        // Over some epochs: each draws other poses, whose energy differs.
+        let over = |part: &[Row]| part.iter().map(|row| row.loss(name).unwrap()).sum::<f32>() / part.len() as f32;
+        let [first, last] = [over(&rows[..20]), over(&rows[settings.epochs - 20..])];
+        println!("{name}: from {first} to {last}");
         assert!(last < share * first, "{name}: from {first} to {last}");
     }
     assert!(rows[0].is_judged());
