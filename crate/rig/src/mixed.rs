@@ -30,16 +30,16 @@ impl Mixer {
         let limbs = limbs_of(character);
         let first = frames.first().filter(|_| limbs.contains(&true))?;
         let parents: Vec<_> = character.joints.iter().map(|joint| joint.parent).collect();
-        let siblings = |parent| parents.iter().filter(|other| **other == Some(parent)).count() > 1;
-        let turned = |joint: usize, parent: usize| {
+        let count = |parent| parents.iter().filter(|other| **other == Some(parent)).count();
+        let siblings = parents.iter().map(|parent| parent.is_some_and(|parent| count(parent) > 1)).collect();
+        let moves = |joint: usize, parent: usize| {
             let axes = |frame: &Pose| (frame[parent].inverse() * frame[joint]).matrix3;
-            !character.is_obstacle(joint) && frames.iter().any(|frame| !axes(frame).abs_diff_eq(axes(first), STILL))
+            frames.iter().any(|frame| !axes(frame).abs_diff_eq(axes(first), STILL))
         };
-        let of = |what: &dyn Fn(usize, usize) -> bool| -> Vec<bool> {
-            let joints = parents.iter().enumerate();
-            joints.map(|(joint, parent)| parent.is_some_and(|parent| what(joint, parent))).collect()
+        let turned = |(joint, parent): (usize, &Option<usize>)| {
+            further > 0.0 && !character.is_obstacle(joint) && parent.is_some_and(|parent| moves(joint, parent))
         };
-        let (siblings, turned) = (of(&|_, parent| siblings(parent)), of(&turned));
+        let turned = parents.iter().enumerate().map(turned).collect();
         Some(Self { siblings, limbs, turned, parents, frames, further })
     }
 
@@ -60,7 +60,7 @@ impl Mixer {
             let placed = moved.map_or(from[joint], |parent| pose[parent] * from[parent].inverse() * from[joint]);
             let angle = self.further * turns.f64();
             let further = turn(&mut turns, angle);
-            pose.push(if self.turned[joint] && self.further > 0.0 { placed * further } else { placed });
+            pose.push(if self.turned[joint] { placed * further } else { placed });
             source.push(from);
         }
         pose

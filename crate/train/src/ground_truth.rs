@@ -77,14 +77,12 @@ impl<'a> Run<'a> {
             let reason = format!("{name} has no clip, wanted at least one: there is no pose to simulate");
             return Err(Error::Simulation(reason));
         }
-        let mixer = Mixer::new(request.character, learned(request.character), FURTHER);
-        if request.mixed > 0 && mixer.is_none() {
-            let name = request.names[0];
-            let reason = format!(
-                "{name} has nothing to mix: wanted limbs, two chains of joints at least, and frames to learn from"
-            );
-            return Err(Error::Simulation(reason));
-        }
+        let mix = || {
+            let found = Mixer::new(request.character, learned(request.character), FURTHER);
+            let wanted = "wanted limbs, two chains of joints at least, and frames to learn from";
+            found.ok_or_else(|| Error::Simulation(format!("{} has nothing to mix: {wanted}", request.names[0])))
+        };
+        let mixer = (request.mixed > 0).then(mix).transpose()?;
         let mut wanted = request.setup();
         if let Some(teacher) = request.teacher {
             check_joints(teacher, &wanted)?;
