@@ -32,13 +32,13 @@ const errors = (metres, degrees) => `${mm(metres)}, ${degrees.toFixed(1)}°`;
 
 /** What a model is: a row. */
 function made({ name, vertices, milliseconds }) {
-  const { poses, mixed, validation_metres: metres, validation_degrees: degrees, key } = trainingOf(name);
+  const { poses, mixed, coarse = 0, validation_metres: metres, validation_degrees: degrees, key } = trainingOf(name);
   // The settings in the key tell how long the training might take, unless it was given epochs.
   const [, seconds] = /budget: Some\(([\d.]+)s\)/.exec(key) ?? [];
   return [
     name,
     vertices.toLocaleString('en'),
-    `${poses.toLocaleString('en')}, ${mixed}`,
+    `${poses.toLocaleString('en')}, ${mixed}; ${coarse.toLocaleString('en')}`,
     seconds ? (seconds / 60).toFixed(1) : '',
     errors(metres, degrees),
     statSync(file(`${name}.safetensors`)).size.toLocaleString('en'),
@@ -60,7 +60,7 @@ function judged({ name, size, frames, ways: { full, coarse, skinned } }) {
 
 /** Tables as Markdown: their title, their heads. */
 const tables = {
-  made: ['The models, predictCloth in Chromium:', ['pair', 'vertices', 'poses learned from, mixed', 'minutes of training', 'poses watched',
+  made: ['The models, predictCloth in Chromium:', ['pair', 'vertices', 'poses learned from, mixed; coarse', 'minutes of training', 'poses watched',
     'bytes, packed', 'ms']],
   judged: ['E_dist and E_norm from the simulation of a clip that none learned from; bending beside it, both from the template:', ['pair',
     'clip, frames', 'whole network', 'skeleton stream', 'plain skinning', 'network, of skinning', `figure, E_dist at ${HUMAN} m`,

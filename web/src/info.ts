@@ -12,6 +12,8 @@ export interface Training {
   readonly poses?: number | undefined;
   /** How many of them mixed limbs and trunks of others. */
   readonly mixed?: number | undefined;
+  /** Poses beside them whose cloth was simulated coarsely, for the skeleton stream. */
+  readonly coarse?: number | undefined;
   /** Mean distance of a vertex from the simulation in poses it was not trained on, metres. */
   readonly distance?: number | undefined;
   /** Mean angle of a normal there, degrees. */

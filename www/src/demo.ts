@@ -71,17 +71,23 @@ export class TryOn {
     for (const garment of wear) void this.#samples.prepare(garment, false);
     const bytes = await fetchBytes(entry, (progress) => onProgress?.('figure', progress));
     const character = await Character.parse(bytes, entry.name);
-    const dressed = new Dressed(entry, character, (look) => this.#samples.prepare(look, this.dressed === dressed));
+    // Of the first figure a sketch is drawn meanwhile.
+    const isFirst = !(this.dressed as Dressed | undefined);
+    const dressed = new Dressed(entry, character, async (look) => {
+      const prepared = this.#samples.prepare(look, this.dressed === dressed);
+      if (this.dressed) await prepared;
+    });
     dressed.backend = this.cost.backend;
     if (character.clips[0]) character.show(character.clips[0], 0);
     const worn = dressed.wear(wear, (progress) => onProgress?.('model', progress));
-    const [came] = await Promise.allSettled([worn, this.stage.prepare(character.scene)]);
+    const [came] = await Promise.allSettled([worn, this.stage.prepare(character.scene)].slice(0, isFirst ? 1 : 2));
     if (came.status === 'rejected' || turn !== this.#turn) {
       dressed.dispose();
       if (came.status === 'rejected') throw came.reason;
       return this.dressed;
     }
     this.#replace(dressed);
+    if (isFirst) this.stage.finish();
     return dressed;
   }
 

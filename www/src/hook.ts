@@ -50,6 +50,8 @@ export interface Demo {
   bare: boolean;
   /** Settles when the models of what is worn have their folds. */
   complete(): Promise<unknown>;
+  /** Settles when the page draws it all as it is to look, no sketch of it. */
+  finished(): Promise<void>;
   /** Geometries and textures that the renderer keeps on the GPU. */
   memory(): { geometries: number; textures: number };
   /** Where the cloth is predicted, and why not on the GPU. */

@@ -101,6 +101,7 @@ async function start(): Promise<void> {
 function offer(page: TryOn, arrange: () => void): void {
   const captured = async () => {
     await hook.complete!();
+    await page.stage.finished;
     // What was changed a moment ago waits for the next animation frame to be drawn.
     page.predict();
     await page.dressed.wardrobe.settled();
@@ -137,6 +138,7 @@ function offer(page: TryOn, arrange: () => void): void {
       await page.choose(page.figures.find(({ id }) => id === figure)!);
     },
     async picture(width, height) {
+      await page.stage.finished;
       // The controls are not in it.
       page.stage.frame({ left: 0, right: 0, top: 0, bottom: 0 });
       page.draw();
@@ -148,6 +150,7 @@ function offer(page: TryOn, arrange: () => void): void {
       });
     },
     complete: () => Promise.all(page.dressed.models.map(({ complete }) => complete)),
+    finished: () => page.stage.finished,
     memory() {
       // What was put on a moment ago is on the GPU once it is drawn.
       page.draw();

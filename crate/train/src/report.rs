@@ -79,11 +79,15 @@ pub struct Report {
     pub mixed: usize,
     /// Mixed poses left out, by reason.
     pub mixed_reasons: BTreeMap<String, usize>,
+    /// Poses kept whose cloth was simulated coarsely.
+    pub coarse: usize,
+    /// Such poses left out, by reason.
+    pub coarse_reasons: BTreeMap<String, usize>,
     /// Frames left out, by reason.
     pub reasons: BTreeMap<String, usize>,
     /// Every frame left out.
     pub left_out: Vec<LeftOut>,
-    /// Seconds of processor time per pose, over all that were simulated, twins and mixed poses too.
+    /// Seconds of processor time per pose, over all that were simulated, twins, mixed and coarse poses too.
     pub seconds: Spread,
     /// Poses by what computed them, as far as it was noted: the same pose is the same byte for byte on machines of one
     /// level only.
@@ -136,6 +140,8 @@ impl Report {
             missing: frames - kept - rejected,
             mixed: dataset.mixed.len(),
             mixed_reasons: reasons(&dataset.mixed_rejected),
+            coarse: dataset.coarse.len(),
+            coarse_reasons: reasons(&dataset.coarse_rejected),
             reasons: reasons(&dataset.rejected),
             left_out: dataset.rejected.iter().map(left_out).collect(),
             seconds: Spread::of(log.seconds),
@@ -212,12 +218,16 @@ impl std::fmt::Display for Report {
         for (reason, count) in &self.reasons {
             writeln!(f, "               {count} left out: {reason}")?;
         }
-        let mixed_left_out: usize = self.mixed_reasons.values().sum();
-        if self.mixed + mixed_left_out > 0 {
-            writeln!(f, "  mixed poses  {} kept, {mixed_left_out} left out", self.mixed)?;
-        }
-        for (reason, count) in &self.mixed_reasons {
-            writeln!(f, "               {count} left out: {reason}")?;
+        let others =
+            [("mixed poses", self.mixed, &self.mixed_reasons), ("coarse poses", self.coarse, &self.coarse_reasons)];
+        for (name, kept, reasons) in others {
+            let left_out: usize = reasons.values().sum();
+            if kept + left_out > 0 {
+                writeln!(f, "  {name:<13}{kept} kept, {left_out} left out")?;
+            }
+            for (reason, count) in reasons {
+                writeln!(f, "               {count} left out: {reason}")?;
+            }
         }
         for (level, count) in &self.levels {
             writeln!(f, "  computed by  {level}: {count} poses")?;

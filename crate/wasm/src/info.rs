@@ -32,6 +32,7 @@ struct Training {
     clips: Option<Vec<String>>,
     poses: Option<usize>,
     mixed: Option<usize>,
+    coarse: Option<usize>,
     distance: Option<f64>,
     angle: Option<f64>,
     version: Option<String>,
@@ -46,6 +47,7 @@ struct Written {
     clips: Option<Vec<String>>,
     poses: Option<usize>,
     mixed: Option<usize>,
+    coarse: Option<usize>,
     validation_metres: Option<f64>,
     validation_degrees: Option<f64>,
     ctsn: Option<String>,
@@ -53,9 +55,9 @@ struct Written {
 
 impl From<Written> for Training {
     fn from(written: Written) -> Self {
-        let Written { character, garment, fabric, clips, poses, mixed, .. } = written;
+        let Written { character, garment, fabric, clips, poses, mixed, coarse, .. } = written;
         let (distance, angle) = (written.validation_metres, written.validation_degrees);
-        Self { character, garment, fabric, clips, poses, mixed, distance, angle, version: written.ctsn }
+        Self { character, garment, fabric, clips, poses, mixed, coarse, distance, angle, version: written.ctsn }
     }
 }
 

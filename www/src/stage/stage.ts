@@ -12,6 +12,7 @@ import {
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { Floor } from './floor.js';
 import { createStudio, createSun } from './light.js';
+import { Sketch } from './sketch.js';
 
 /** Pixels that controls cover at each side of the picture. */
 export interface Margins {
@@ -53,6 +54,8 @@ export class Stage {
   readonly camera = new PerspectiveCamera(FIELD, 1, 0.02, 60);
   readonly controls: OrbitControls;
   readonly floor = new Floor();
+  /** Settles when what is drawn is a sketch no longer. */
+  finished: Promise<void> = Promise.resolve();
   readonly #canvas: HTMLCanvasElement;
   readonly #sun = createSun();
   readonly #focus = new Vector3(0, 0.9, 0);
@@ -61,6 +64,9 @@ export class Stage {
   #middle = 0.9;
   #changed = true;
   #margins: Margins = { left: 0, right: 0, top: 0, bottom: 0 };
+  /** Draws until the first programs are there. */
+  #sketch: Sketch | undefined = new Sketch();
+  #compiling: Promise<unknown> = Promise.resolve();
 
   constructor(canvas: HTMLCanvasElement) {
     this.#canvas = canvas;
@@ -162,12 +168,26 @@ export class Stage {
   async prepare(object: Object3D): Promise<void> {
     const { renderer, camera, scene } = this;
     // Without that extension nothing tells when a program is there: three would warn, and not wait.
-    if (renderer.extensions.has('KHR_parallel_shader_compile')) await renderer.compileAsync(object, camera, scene);
-    else renderer.compile(object, camera, scene);
+    if (!renderer.extensions.has('KHR_parallel_shader_compile')) return void renderer.compile(object, camera, scene);
+    const compiled = renderer.compileAsync(object, camera, scene);
+    this.#compiling = Promise.all([this.#compiling, compiled]);
+    await compiled;
+  }
+
+  /** Draws sketches until all is compiled that was asked for by now. */
+  finish(): void {
+    this.finished = this.#compiling.then(() => {
+      this.#sketch?.dispose();
+      this.#sketch = undefined;
+      this.#changed = true;
+    });
   }
 
   render(): void {
-    this.renderer.render(this.scene, this.camera);
+    const { renderer, scene, camera } = this;
+    const draw = () => renderer.render(scene, camera);
+    if (this.#sketch) this.#sketch.of(scene, this.#sun, draw);
+    else draw();
   }
 
   /** Does something without controls, seen from elsewhere, and leaves all as it was. */

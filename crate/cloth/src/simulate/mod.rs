@@ -21,6 +21,7 @@ mod outer_skin;
 mod part;
 mod posed;
 mod proximity;
+mod relaxed;
 mod rescue;
 mod settings;
 mod simulator;

@@ -15,7 +15,6 @@ use super::outcome::{Outcome, Status, stretch};
 use super::outer_skin::{outer_skin, smooth};
 use super::rescue::ROUNDS;
 use super::settings::Settings;
-use super::untangle::untangle;
 use crate::wrap::SKIN;
 use crate::{Error, Result};
 use ctsn_rig::path::{body_frame, is_sound, to_body_frame};
@@ -30,7 +29,7 @@ pub struct Simulator {
     rest: Vec<DVec3>,
     pub(super) level: Level,
     /// What a fine garment travels as.
-    coarse: Option<(Coarse, Level)>,
+    pub(super) coarse: Option<(Coarse, Level)>,
     /// The body's outer skin, which the cloth touches.
     pub(super) collider: Collider,
     /// The body itself, which no kept pose may enter.
@@ -64,6 +63,11 @@ impl Simulator {
         let coarse = coarse.transpose()?;
         let character = Character { clips: Vec::new(), surface: Surface::default(), ..character.clone() };
         Ok(Self { character, rest, level: fine, coarse, collider, body, cover, settings })
+    }
+
+    /// Whether the garment has so many vertices that it travels thinned.
+    pub fn is_fine(&self) -> bool {
+        self.coarse.is_some()
     }
 
     /// The template `T_C`: the garment at rest on the canonical body, metres in canonical space [n].
@@ -102,25 +106,8 @@ impl Simulator {
         self.settle(solver, &body, self.settings.relax_iterations, ROUNDS, pose, DAffine3::IDENTITY)
     }
 
-    /// Relaxes `pose` from `start` (body frame [n]), which may cross itself and the body a little. The equilibrium is
-    /// as true as that which [`simulate`](Self::simulate) comes to, but of all there are the one nearest to the start.
-    /// What is left out is tried again once only: a start on the wrong side of a limb stays there.
-    pub fn relax(&self, template: &[DVec3], pose: &Pose, start: &[DVec3]) -> Outcome {
-        if let Err(reason) = self.check(template, pose).and_then(|()| self.check_cloth("start", start)) {
-            return self.refuse(reason);
-        }
-        let mut positions = start.to_vec();
-        untangle(&self.level.cloth.elements, &self.level.rings, &mut positions);
-        let mut solver = self.level.solver(&self.settings, positions);
-        let end = self.character.skinning(&to_body_frame(&self.character, pose));
-        let heights = self.cover.heights(&self.body.posed(pose), &self.collider, &end);
-        let body = self.collider.raised(&end, &heights, 1.0);
-        self.level.pin(&mut solver, template, &end);
-        self.settle(solver, &body, self.settings.relax_iterations, 1, pose, DAffine3::IDENTITY)
-    }
-
     /// Why this cannot be simulated.
-    fn check(&self, template: &[DVec3], pose: &Pose) -> std::result::Result<(), String> {
+    pub(super) fn check(&self, template: &[DVec3], pose: &Pose) -> std::result::Result<(), String> {
         self.check_cloth("template", template)?;
         if is_sound(&self.character, pose) {
             return Ok(());
@@ -129,26 +116,31 @@ impl Simulator {
         Err(format!("pose: wanted {wanted} finite, invertible joints, found {found}"))
     }
 
-    fn check_cloth(&self, name: &str, cloth: &[DVec3]) -> std::result::Result<(), String> {
+    pub(super) fn check_cloth(&self, name: &str, cloth: &[DVec3]) -> std::result::Result<(), String> {
         if cloth.len() == self.rest.len() && cloth.iter().all(|p| p.is_finite()) {
             return Ok(());
         }
         Err(format!("{name}: wanted {} finite vertices, found {}", self.rest.len(), cloth.len()))
     }
 
+    /// Why an outcome is not at rest, if it is not.
+    pub(super) fn unrest(&self, outcome: &Outcome) -> Option<String> {
+        let Outcome { residual, drift, .. } = *outcome;
+        if !residual.is_finite() || outcome.positions.iter().any(|p| !p.is_finite()) {
+            return Some("wanted finite forces, found none".into());
+        }
+        let Settings { residual: wanted, drift: least, .. } = self.settings;
+        let still = 1e3 * drift;
+        (residual > wanted && drift > least)
+            .then(|| format!("residual: wanted below {wanted}, found {residual:.4}, still moving by {still:.2} mm"))
+    }
+
     fn judge(&self, outcome: &Outcome, inside: Inside) -> Status {
         let reject = |reason| Status::Rejected { reason };
-        let Outcome { residual, drift, crossings, stretch_max, .. } = *outcome;
-        if !residual.is_finite() || outcome.positions.iter().any(|p| !p.is_finite()) {
-            return reject("wanted finite forces, found none".into());
-        }
         let wanted = &self.settings;
-        if residual > wanted.residual && drift > wanted.drift {
-            return reject(format!(
-                "residual: wanted below {}, found {residual:.4}, still moving by {:.2} mm",
-                wanted.residual,
-                1e3 * drift
-            ));
+        let Outcome { crossings, stretch_max, .. } = *outcome;
+        if let Some(reason) = self.unrest(outcome) {
+            return reject(reason);
         }
         // Vertices that were let go where the body pinches them. Leading them out of the crease afterwards was tried,
         // by contact planes and by springs towards its mouth: the first never came to rest, the second drew as many
@@ -197,6 +189,19 @@ impl Simulator {
 
     /// `to_body`: from the solver's space to the body frame of `pose`.
     pub(super) fn outcome(&self, solver: &Solver, relaxed: Probe, pose: &Pose, to_body: DAffine3) -> Outcome {
+        let (mut outcome, inside) = self.measured(solver, relaxed, pose, to_body);
+        outcome.status = self.judge(&outcome, inside);
+        outcome
+    }
+
+    /// The same, not judged yet, and what of it is inside the body.
+    pub(super) fn measured(
+        &self,
+        solver: &Solver,
+        relaxed: Probe,
+        pose: &Pose,
+        to_body: DAffine3,
+    ) -> (Outcome, Inside) {
         let from_body = to_body.inverse();
         let crossings = |positions: &[DVec3]| self.level.cloth.elements.crossings(positions).len();
         let at_rest: Vec<DVec3> = solver.positions.iter().map(|p| to_body.transform_point3(*p)).collect();
@@ -208,7 +213,7 @@ impl Simulator {
             (lifted, placed, positions) = (0, at_rest, solver.positions.clone());
         }
         let (stretch_p99, stretch_max) = stretch(&self.level.cloth, &positions);
-        let mut outcome = Outcome {
+        let outcome = Outcome {
             residual: relaxed.residual,
             drift: relaxed.drift,
             crossings: crossings(&positions),
@@ -220,12 +225,11 @@ impl Simulator {
             status: Status::Converged,
             positions,
         };
-        outcome.status = self.judge(&outcome, self.inside(pose, &placed));
-        outcome
+        (outcome, self.inside(pose, &placed))
     }
 
     /// An outcome for input that cannot be simulated: the garment as given.
-    fn refuse(&self, reason: String) -> Outcome {
+    pub(super) fn refuse(&self, reason: String) -> Outcome {
         let frame = body_frame(&self.character, &self.character.canonical_pose());
         let positions: Vec<DVec3> = self.rest.iter().map(|p| frame.transform_point3(*p)).collect();
         let (stretch_p99, stretch_max) = stretch(&self.level.cloth, &positions);

@@ -63,6 +63,8 @@ const FEWEST: usize = 60;
 /// Mixed poses for each frame. Of a stranger's T-shirt 180 poses were simulated, and another's dances judged: with a
 /// third of them mixed E_dist was 17.5 mm, with two thirds, turned further, 12.6 mm (docs/decisions/poses.md).
 const MIXED: usize = 2;
+/// Coarse poses for each of those, of a garment that is fine: they take a sixth of the time.
+const COARSE: usize = 4;
 /// Poses by which the time of one is measured.
 const TIMED: usize = 6;
 
@@ -82,13 +84,14 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     ensure!(frames >= POSES, "wanted at least {POSES} poses to learn from, found {frames} in the clips and --poses");
     let mixable = options.mixed == 0 && has_limbs(&character);
     let mixed = if mixable { frames * MIXED } else { options.mixed };
+    let coarse = if options.coarse == 0 { (frames + mixed) * COARSE } else { options.coarse };
 
     let steps = Steps { character: &character, arguments, garment: &garment, budget, begun: Instant::now() };
     let first = work.join("first.safetensors");
     let shown = steps.check()?;
     if !first.exists() {
         let few = frames.div_ceil(FIRST).max(FEWEST).min(frames);
-        let along = simulate::Options { poses: Some(few), mixed: 0, noise_floor: 0, ..options.clone() };
+        let along = simulate::Options { poses: Some(few), mixed: 0, coarse: 0, noise_floor: 0, ..options.clone() };
         steps.estimate(&along, &work.join("first"), frames + mixed)?;
         println!("step 1 of 5: poses along their paths");
         steps.simulate(&along, &work.join("first"), 0)?;
@@ -99,7 +102,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         write(output, &read(&first)?)?;
         println!("{}: a first model; a better one follows", file_name(output));
     }
-    let many = simulate::Options { poses: Some(frames), mixed, from: Some(first), ..options.clone() };
+    let many = simulate::Options { poses: Some(frames), mixed, coarse, from: Some(first), ..options.clone() };
     println!("step 3 of 5: poses from what it predicts");
     // To relax them anew would teach less than as many others.
     adopt(&work.join("first"), &work)?;
@@ -209,7 +212,7 @@ impl Steps<'_> {
         let all = options.poses.unwrap_or(usize::MAX);
         let mut poses = FEWEST.min(all);
         loop {
-            let enough = simulate::Options { poses: Some(poses), mixed: 0, ..options.clone() };
+            let enough = simulate::Options { poses: Some(poses), mixed: 0, coarse: 0, ..options.clone() };
             simulate::along(self.character, &self.simulation(&enough, dataset), None)?;
             let kept = Report::new(dataset)?.kept;
             if kept >= FEWEST || poses == all {

@@ -72,10 +72,13 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let mut slices = slices(arguments, &dataset)?;
     let files = Files { checkpoint: output.with_extension("checkpoint"), curve: output.with_extension("curve.csv") };
     // Before the training: an unusable body must not be found out after hours.
-    let body = body(&dataset.setup, &slices.train)?;
-    let images =
-        if arguments.self_supervised { Vec::new() } else { training::mirrored(&dataset.setup, &slices.train)? };
-    slices.add(&images);
+    let body = body(&dataset.setup, &slices.learned())?;
+    let mirrored = |samples: &[&Sample]| match arguments.self_supervised {
+        true => Ok(Vec::new()),
+        false => training::mirrored(&dataset.setup, samples),
+    };
+    let [images, coarse] = [mirrored(&slices.train)?, mirrored(&slices.coarse)?];
+    slices.add(&images, &coarse);
     let by: By = match arguments {
         Arguments { self_supervised: true, .. } => Trainer::self_supervised,
         Arguments { teacher: true, .. } => Trainer::teacher,
@@ -127,7 +130,8 @@ fn slices<'a>(arguments: &Arguments, dataset: &'a Dataset) -> Result<Slices<'a>>
     if !arguments.self_supervised {
         return Ok(training::slices(dataset)?);
     }
-    Ok(Slices { train: dataset.samples.iter().collect(), mixed: 0, images: 0, validation: Vec::new() })
+    let train = dataset.samples.iter().collect();
+    Ok(Slices { train, coarse: Vec::new(), mixed: 0, images: [0; 2], validation: Vec::new() })
 }
 
 /// Whether this same training has made the model at `output`; then stores it as asked, from what was `learned`.
@@ -163,32 +167,37 @@ impl Training {
     fn trainer(&self, by: By, setup: &Setup, slices: &Slices, body: Body<Vec<f32>, Vec<u32>>) -> Result<Trainer> {
         let variant = Variant::without(&self.without);
         let architecture = variant.sizes(self.network);
-        let mut model = training::initial(setup, &slices.train, architecture, self.settings.seed)?;
+        let mut model = training::initial(setup, &slices.learned(), architecture, self.settings.seed)?;
         model.body = Some(body);
         model.cut = Some(Cut::new(setup.garment.clone(), &model.graph, STEPS)?);
         let mixed = if slices.mixed == 0 { String::new() } else { format!(" ({} of them mixed)", slices.mixed) };
-        let images = if slices.images == 0 { "" } else { ", each also in a mirror" };
+        let images = if slices.images == [0; 2] { "" } else { ", each also in a mirror" };
+        let [train, coarse] = slices.simulated();
+        let coarse = if coarse == 0 { String::new() } else { format!(", {coarse} more of coarse cloth") };
         println!(
-            "{} poses to learn from{mixed}{images}, {} to validate, {} vertices, {architecture:?}",
-            slices.train.len() - slices.images,
+            "{train} poses to learn from{mixed}{coarse}{images}, {} to validate, {} vertices, {architecture:?}",
             slices.validation.len(),
             model.sizes.vertices
         );
         let settings = Settings { variant, ..self.settings };
-        Ok(by(model, setup, &slices.train, settings)?)
+        let mut trainer = by(model, setup, &slices.train, settings)?;
+        trainer.add_coarse(setup, &slices.coarse)?;
+        Ok(trainer)
     }
 
     /// What the model file says of its training. Nothing in it depends on the time of day.
     fn summary(&self, setup: &Setup, slices: &Slices, trainer: &Trainer, best: &Row, key: Option<String>) -> String {
+        let [train, coarse] = slices.simulated();
         let part = |part: &Part| format!("{part:?}").to_lowercase();
         let summary = serde_json::json!({
             "character": setup.description.character,
             "garment": setup.description.garment,
             "fabric": setup.description.material.name,
             "clips": setup.description.clips,
-            "poses": slices.train.len() - slices.images,
+            "poses": train,
             "mixed": slices.mixed,
-            "mirrored": slices.images,
+            "mirrored": slices.images[0],
+            "coarse": coarse,
             "without": self.without.iter().map(part).collect::<Vec<_>>(),
             "epoch": best.epoch,
             "batch": self.settings.batch,

@@ -16,7 +16,7 @@ use ctsn_core::file::Tensors;
 pub use digest::{digest, fingerprint};
 pub use drawn::{Drawn, stored_surface};
 pub(crate) use sample::paths;
-pub use sample::{Record, Sample, mixed_path, pose_path, twin_path};
+pub use sample::{Record, Sample, coarse_path, mixed_path, pose_path, twin_path};
 use serde::{Deserialize, Serialize};
 pub use setup::{Description, Setup};
 pub use split::Split;
@@ -35,12 +35,18 @@ pub struct Dataset {
     pub mixed: Vec<Sample>,
     /// The mixed poses that were left out.
     pub mixed_rejected: Vec<Record>,
+    /// Accepted poses whose cloth was simulated coarsely, to learn from only.
+    pub coarse: Vec<Sample>,
+    /// Those that were left out.
+    pub coarse_rejected: Vec<Record>,
 }
 
 impl Dataset {
     /// A dataset of frames that were all kept.
     pub fn new(setup: Setup, samples: Vec<Sample>) -> Self {
-        Self { setup, samples, rejected: Vec::new(), mixed: Vec::new(), mixed_rejected: Vec::new() }
+        let [rejected, mixed_rejected, coarse_rejected] = Default::default();
+        let [mixed, coarse] = Default::default();
+        Self { setup, samples, rejected, mixed, mixed_rejected, coarse, coarse_rejected }
     }
 
     /// Reads a whole dataset.
@@ -56,12 +62,13 @@ impl Dataset {
             Ok((samples, rejected))
         };
         let ((samples, rejected), (mixed, mixed_rejected)) = (read("poses")?, read("mixed")?);
+        let (coarse, coarse_rejected) = read("coarse")?;
         let clips = setup.description.clips.len();
         if let Some(record) = samples.iter().map(|sample| &sample.record).chain(&rejected).find(|r| r.clip >= clips) {
             let reason = format!("holds a pose of clip {}, wanted one of {clips} clips, from 0", record.clip);
             return Err(Error::File { path: folder.to_owned(), reason });
         }
-        Ok(Self { rejected, setup, samples, mixed_rejected, mixed })
+        Ok(Self { setup, samples, rejected, mixed, mixed_rejected, coarse, coarse_rejected })
     }
 
     /// The frames that were left out, read from the `folder` of this dataset: how their cloth ended.

@@ -85,6 +85,11 @@ pub fn mixed_path(folder: &Path, number: usize) -> PathBuf {
     folder.join("mixed").join(format!("{number:05}.safetensors"))
 }
 
+/// Path of coarsely simulated pose `number`.
+pub fn coarse_path(folder: &Path, number: usize) -> PathBuf {
+    folder.join("coarse").join(format!("{number:05}.safetensors"))
+}
+
 /// The files of poses in `folder`, in the order of clip and frame; none where there is no such folder.
 pub fn paths(folder: &Path) -> Result<Vec<PathBuf>> {
     let io = |source| Error::Io { path: folder.to_owned(), source };

@@ -34,7 +34,7 @@ impl Split {
 }
 
 impl Dataset {
-    /// All that was kept, mixed poses last.
+    /// All that was kept of the simulated garment itself, mixed poses last.
     pub fn all(&self) -> impl Iterator<Item = &Sample> {
         self.samples.iter().chain(&self.mixed)
     }

@@ -104,6 +104,7 @@ fn request<'a>(character: &'a Character, garment: &'a Garment) -> Request<'a> {
         shard: Shard::WHOLE,
         poses: None,
         mixed: 0,
+        coarse: 0,
         twins: 0,
     }
 }
@@ -188,4 +189,36 @@ fn mixed_poses_are_made_of_what_is_learned_from() {
     let request = |mixed| Request { mixed, shard: "1/2".parse().unwrap(), ..request(&character, &garment) };
     let mixed = |tasks: Vec<Task>| tasks.into_iter().filter(|task| task.kind == Kind::Mixed).map(|task| task.frame);
     assert_eq!(mixed(tasks(&request(6), 100, Path::new(""))).collect::<Vec<_>>(), [1, 3, 5]);
+}
+
+#[test]
+fn coarse_poses_are_frames_and_mixtures_in_turn_and_want_a_model() {
+    let (mut character, garment) = scene();
+    let place = |frame: usize| vec![DAffine3::from_translation(DVec3::new(0.0, frame as f64, 0.0)); 2];
+    character.clips = vec![Clip { name: "only".to_owned(), rate: 7.3, poses: (0..100).map(place).collect() }];
+    let hips = |poses: &CoarsePoses, numbers: &[usize]| -> Vec<Option<usize>> {
+        numbers.iter().map(|number| poses.pose(*number).map(|pose| pose[0].translation.y as usize)).collect()
+    };
+    let still = CoarsePoses::new(learned(&character), None);
+    let all = hips(&still, &(0..82).collect::<Vec<_>>());
+    assert_eq!(all.last(), Some(&None), "81 frames are learned from");
+    let mut sorted: Vec<usize> = all.iter().copied().flatten().collect();
+    assert_eq!(sorted[80], 0, "the frame that is simulated finely first comes last");
+    sorted.sort_unstable();
+    assert_eq!(sorted, (0..81).collect::<Vec<_>>());
+    for side in ["Left", "Right"] {
+        character.joints.push(Joint { name: side.to_owned(), parent: Some(0), inverse_bind: DAffine3::IDENTITY });
+        character.joints.push(Joint { parent: Some(character.joints.len() - 1), ..character.joints[2].clone() });
+    }
+    character.clips[0].poses.iter_mut().for_each(|pose| *pose = [&pose[..1]; 6].concat());
+    let mixer = Mixer::new(&character, learned(&character), FURTHER);
+    assert!(mixer.is_some());
+    let mixed = CoarsePoses::new(learned(&character), mixer);
+    assert_eq!(hips(&mixed, &[1, 3, 161]), [all[0], all[1], all[80]], "frames");
+    assert!(mixed.pose(163).is_some() && mixed.pose(0) != mixed.pose(2), "made up");
+    let tasks = tasks(&Request { coarse: 6, ..request(&character, &garment) }, 2, Path::new(""));
+    assert_eq!(tasks.iter().filter(|task| task.kind == Kind::Coarse).count(), 6);
+    let folder = tempfile::tempdir().unwrap();
+    let refused = Run::new(Request { coarse: 6, ..request(&character, &garment) }, folder.path()).err().unwrap();
+    assert!(refused.to_string().contains("6 coarse poses: wanted a model"), "{refused}");
 }

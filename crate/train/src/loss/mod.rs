@@ -54,6 +54,17 @@ pub struct Term {
 /// A loss that was made; `None` where the training has nothing for it to do.
 pub type Made = Result<Option<Box<dyn Loss>>>;
 
+/// What is known of a pose's cloth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Known {
+    /// The simulated cloth.
+    Truth,
+    /// Where it lies without its fine folds: a thinned garment was simulated.
+    Coarse,
+    /// Nothing.
+    Nothing,
+}
+
 /// A prediction of the network.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Prediction {
@@ -90,9 +101,18 @@ pub trait Loss: Send {
 }
 
 impl Term {
-    /// The predictions it reads of a pose.
-    pub fn reads(&self, is_simulated: bool) -> &'static [Prediction] {
-        if is_simulated { self.simulated } else { self.unsimulated }
+    /// Whether it reads that prediction of a pose. Of coarsely simulated cloth only the skeleton stream learns.
+    pub(crate) fn reads(&self, known: Known, prediction: Prediction) -> bool {
+        match known {
+            Known::Truth => self.simulated.contains(&prediction),
+            Known::Coarse => prediction == Prediction::Coarse && self.simulated.contains(&prediction),
+            Known::Nothing => self.unsimulated.contains(&prediction),
+        }
+    }
+
+    /// Whether it reads anything of a pose.
+    pub(crate) fn reads_any(&self, known: Known) -> bool {
+        [Prediction::Coarse, Prediction::Whole].iter().any(|prediction| self.reads(known, *prediction))
     }
 }
 
@@ -117,9 +137,12 @@ impl Losses {
         self.0.iter().map(|(term, _)| *term).collect()
     }
 
-    /// What each keeps of a truth [n, 3].
-    pub fn targets(&self, truth: &[f32]) -> Vec<Vec<f32>> {
-        self.0.iter().map(|(_, loss)| loss.target(truth)).collect()
+    /// What each keeps of a truth [n, 3]; nothing where it reads none.
+    pub fn targets(&self, truth: &[f32], known: Known) -> Vec<Vec<f32>> {
+        let target = |(term, loss): &(Term, Box<dyn Loss>)| {
+            if term.reads_any(known) { loss.target(truth) } else { Vec::new() }
+        };
+        self.0.iter().map(target).collect()
     }
 
     /// Shows them a pose.

@@ -1,7 +1,7 @@
 //! Checkpoints: parameters, moments, the best parameters and the learning curve. Training resumed from one goes on as
 //! if it had not been interrupted.
 
-use super::{Trainer, unsimulated};
+use super::{Trainer, coarse, unsimulated};
 use crate::{Error, Result, loss};
 use ctsn_core::file::{Tensor, Tensors};
 use ctsn_rig::file::{tensors, write};
@@ -51,6 +51,8 @@ impl Trainer {
     /// What two trainings must have in common to go on as one, and by which their models are the same.
     pub fn key(&self) -> String {
         let (settings, terms, each) = (self.settings, loss::key(&self.terms), unsimulated::EACH);
-        format!("{settings:?} {terms} unsimulated {each} start {:016x} data {:016x}", self.start, self.data)
+        // Without coarse poses the key is that of versions that knew none.
+        let coarse = self.coarse.as_ref().map_or(String::new(), |_| format!("coarse {} ", coarse::EACH));
+        format!("{settings:?} {terms} unsimulated {each} {coarse}start {:016x} data {:016x}", self.start, self.data)
     }
 }

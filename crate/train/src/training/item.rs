@@ -4,7 +4,7 @@ use super::recording::Recording;
 use super::tape::{Lane, Shared};
 use crate::dataset::Sample;
 use crate::judging::differences;
-use crate::loss::{Losses, Prediction};
+use crate::loss::{Known, Losses, Prediction};
 use crate::{Error, Result};
 use ctsn_core::model::HostModel;
 use ctsn_core::pose::BodyFrame;
@@ -13,22 +13,23 @@ use ctsn_rig::vertices;
 /// One pose as the tape sees it.
 pub(crate) struct Item {
     pub body_frame: BodyFrame,
-    /// What each loss keeps of the truth; `None` where nothing was simulated.
-    pub targets: Option<Vec<Vec<f32>>>,
+    pub known: Known,
+    /// What each loss keeps of the truth, where it is known.
+    pub targets: Vec<Vec<f32>>,
 }
 
 impl Item {
-    /// A sample for `model`, to learn from by `losses`.
-    pub fn new(model: &HostModel, sample: &Sample, losses: &Losses) -> Result<Self> {
+    /// A sample for `model`, to learn from by `losses`; `known`: how finely its truth was simulated.
+    pub fn new(model: &HostModel, sample: &Sample, losses: &Losses, known: Known) -> Result<Self> {
         check(model, sample)?;
-        Ok(Self { targets: Some(losses.targets(&sample.truth)), ..Self::posed(model, &sample.joints)? })
+        Ok(Self { known, targets: losses.targets(&sample.truth, known), ..Self::posed(model, &sample.joints)? })
     }
 
     /// A pose without truth: world joint transforms, row-major.
     pub fn posed(model: &HostModel, joints: &[f32]) -> Result<Self> {
         let mut body_frame = BodyFrame::new(model.sizes.joints);
         model.rig.body_frame(joints, &mut body_frame)?;
-        Ok(Self { body_frame, targets: None })
+        Ok(Self { body_frame, known: Known::Nothing, targets: Vec::new() })
     }
 
     /// Forward and backward pass; gradients are those of the mean of `batch` poses. The value of each loss, zero where
@@ -50,9 +51,10 @@ impl Item {
             gradient.fill(0.0);
             let predicted = lane.value(shared, prediction);
             for (i, term, loss) in losses.each() {
-                let mut read = term.reads(self.targets.is_some()).iter();
-                if read.any(|read| recording.prediction(*read) == prediction) {
-                    let target = self.targets.as_ref().map_or(&[][..], |targets| &targets[i]);
+                let here = |read: &Prediction| recording.prediction(*read) == prediction;
+                let mut places = [Prediction::Coarse, Prediction::Whole].into_iter().filter(here);
+                if places.any(|read| term.reads(self.known, read)) {
+                    let target = self.targets.get(i).map_or(&[][..], Vec::as_slice);
                     values[i] = loss.value(predicted, target, term.weight * scale, &mut gradient);
                 }
             }

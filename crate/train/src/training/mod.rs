@@ -4,6 +4,7 @@
 pub(crate) mod adam;
 mod blur;
 mod checkpoint;
+mod coarse;
 pub mod curve;
 mod duration;
 mod fit;
@@ -25,9 +26,10 @@ mod variant;
 mod weights;
 
 use crate::dataset::{Sample, Setup, digest, fingerprint};
-use crate::loss::{LOSSES, Losses, SELF_SUPERVISED, Scene, TEACHER, Term, magnitude, told};
+use crate::loss::{Known, LOSSES, Losses, SELF_SUPERVISED, Scene, TEACHER, Term, magnitude, told};
 use crate::{Error, Result};
 use adam::schedule;
+use coarse::Coarse;
 use ctsn_core::model::{HostModel, Storage};
 use ctsn_core::network::DeviceModel;
 pub use curve::Row;
@@ -100,6 +102,8 @@ pub struct Trainer {
     recording: Recording,
     /// None where no loss reads what the network makes of such poses, or there is nothing to make them of.
     unsimulated: Option<Unsimulated>,
+    /// None where no pose was simulated coarsely.
+    coarse: Option<Coarse>,
     parameters: Parameters,
     /// What makes some of `parameters`, where something does.
     hypernetwork: Option<Hypernetwork>,
@@ -156,7 +160,8 @@ impl Trainer {
         let made = || Losses::new(losses, &Scene { model: &model, setup, variant });
         let own = made()?;
         let terms = own.terms();
-        let items = samples.iter().map(|sample| Item::new(&model, sample, &own)).collect::<Result<_>>()?;
+        let items =
+            samples.iter().map(|sample| Item::new(&model, sample, &own, Known::Truth)).collect::<Result<_>>()?;
         let (recording, shared, learning) = Recording::new(&model, variant, variant.streams());
         let unsimulated = Unsimulated::new(&model, &terms, setup, samples, &settings)?;
         let shares = SHARES.min(batch);
@@ -174,6 +179,7 @@ impl Trainer {
             items,
             recording,
             unsimulated,
+            coarse: None,
             parameters,
             hypernetwork,
             workers,
@@ -187,6 +193,19 @@ impl Trainer {
         };
         trainer.start = digest(&trainer.model().to_bytes(Storage::F32));
         Ok(trainer)
+    }
+
+    /// Adds poses of the same garment and character whose cloth was simulated coarsely. They are no part of an epoch: as
+    /// many are drawn for each step as come to one of each, up to four times the batch.
+    pub fn add_coarse(&mut self, setup: &Setup, samples: &[&Sample]) -> Result<()> {
+        let Some(Worker { losses, .. }) = self.workers.first() else { return Ok(()) };
+        self.coarse = Coarse::new(&self.model, samples, losses, &self.settings, self.steps())?;
+        let Some(coarse) = &self.coarse else { return Ok(()) };
+        for worker in &mut self.workers {
+            worker.coarse = Some(coarse.recording.lane(&self.parameters.shared)?);
+        }
+        self.data ^= fingerprint(setup, samples)?.rotate_left(1);
+        Ok(())
     }
 
     /// One pass over the samples, shuffled by seed and epoch; the mean of each loss. `progress(step, steps, losses)`

@@ -11,19 +11,32 @@ pub const POSES: usize = 50;
 pub struct Slices<'a> {
     /// What is learned from, mixed poses last, behind them [`mirrored`](super::mirrored) ones, if they are added.
     pub train: Vec<&'a Sample>,
-    /// How many of these are mixed poses.
+    /// What the skeleton stream alone learns from: poses whose cloth was simulated coarsely, with their images.
+    pub coarse: Vec<&'a Sample>,
+    /// How many of `train` are mixed poses.
     pub mixed: usize,
-    /// How many are images of the others.
-    pub images: usize,
+    /// How many of `train` are images of the others, and how many of `coarse`.
+    pub images: [usize; 2],
     /// What is predicted after every epoch.
     pub validation: Vec<&'a Sample>,
 }
 
 impl<'a> Slices<'a> {
     /// Adds images of the poses to learn from.
-    pub fn add(&mut self, images: &'a [Sample]) {
-        self.images += images.len();
+    pub fn add(&mut self, images: &'a [Sample], coarse: &'a [Sample]) {
+        self.images = [images.len(), coarse.len()];
         self.train.extend(images);
+        self.coarse.extend(coarse);
+    }
+
+    /// Numbers of simulated poses in `train` and in `coarse`: without images.
+    pub fn simulated(&self) -> [usize; 2] {
+        [self.train.len() - self.images[0], self.coarse.len() - self.images[1]]
+    }
+
+    /// Every pose that something is learned from.
+    pub fn learned(&self) -> Vec<&'a Sample> {
+        [&self.train[..], &self.coarse].concat()
     }
 }
 
@@ -44,5 +57,6 @@ pub fn slices(dataset: &Dataset) -> Result<Slices<'_>> {
             return Err(Error::Dataset(format!("the {name} split is empty: {poses} poses of {clips} clips in all")));
         }
     }
-    Ok(Slices { train, mixed: dataset.mixed.len(), images: 0, validation })
+    let coarse = dataset.coarse.iter().collect();
+    Ok(Slices { train, coarse, mixed: dataset.mixed.len(), images: [0; 2], validation })
 }

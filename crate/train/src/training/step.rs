@@ -6,7 +6,7 @@ use super::tape::{Lane, Shared};
 use super::unsimulated::Unsimulated;
 use super::{Sums, Trainer};
 use crate::Result;
-use crate::loss::Losses;
+use crate::loss::{Known, Losses};
 use rayon::prelude::*;
 
 /// What a thread works with.
@@ -14,6 +14,8 @@ pub(super) struct Worker {
     pub lane: Lane,
     /// For unsimulated poses.
     unsimulated: Option<Lane>,
+    /// For coarsely simulated ones.
+    pub coarse: Option<Lane>,
     pub losses: Losses,
 }
 
@@ -25,7 +27,7 @@ impl Worker {
         losses: Losses,
     ) -> Result<Self> {
         let unsimulated = unsimulated.map(|poses| poses.recording.lane(shared)).transpose()?;
-        Ok(Self { lane: recording.lane(shared)?, unsimulated, losses })
+        Ok(Self { lane: recording.lane(shared)?, unsimulated, coarse: None, losses })
     }
 }
 
@@ -35,24 +37,27 @@ impl Trainer {
         let rate = self.rate(done);
         let drawn = self.unsimulated.as_ref().map_or(Ok(Vec::new()), |poses| poses.draw(&self.model, done))?;
         let batch: Vec<&Item> = batch.iter().map(|item| &self.items[*item]).collect();
+        let drawn: Vec<&Item> = drawn.iter().collect();
+        let coarse = self.coarse.as_ref().map_or(Vec::new(), |poses| poses.draw(done));
         let (shared, parameters, shares) = (&self.parameters.shared, self.parameters.ids(), self.sums.len());
-        let (recording, unsimulated) = (&self.recording, self.unsimulated.as_ref().map(|poses| &poses.recording));
+        let unsimulated = self.unsimulated.as_ref().map(|poses| &poses.recording);
+        let coarsely = self.coarse.as_ref().map(|poses| &poses.recording);
         let each = shares.div_ceil(self.workers.len());
         let run = |(thread, (worker, sums)): (usize, (&mut Worker, &mut [Sums]))| {
             let share = |(number, sums): (usize, &mut Sums)| {
-                let Worker { lane, unsimulated: other_lane, losses } = &mut *worker;
-                let mut learn = |recording: &Recording, lane: &mut Lane, items: &[&Item]| -> Vec<Vec<f32>> {
+                let Worker { lane, unsimulated: other_lane, coarse: coarse_lane, losses } = &mut *worker;
+                let mut learn = |recording: Option<&Recording>, lane: Option<&mut Lane>, items: &[&Item]| {
+                    let (Some(recording), Some(lane)) = (recording, lane) else { return Vec::new() };
                     lane.exchange(&parameters, sums);
                     let mine = items.iter().skip(thread * each + number).step_by(shares);
                     let values = mine.map(|item| item.learn(recording, shared, lane, losses, items.len()));
-                    let values = values.collect();
+                    let values = values.collect::<Vec<_>>();
                     lane.exchange(&parameters, sums);
                     values
                 };
-                let mut values = learn(recording, lane, &batch);
-                if let (Some(recording), Some(lane)) = (unsimulated, other_lane) {
-                    values.extend(learn(recording, lane, &drawn.iter().collect::<Vec<_>>()));
-                }
+                let mut values = learn(Some(&self.recording), Some(lane), &batch);
+                values.extend(learn(unsimulated, other_lane.as_mut(), &drawn));
+                values.extend(learn(coarsely, coarse_lane.as_mut(), &coarse));
                 values
             };
             sums.iter_mut().for_each(|sums| sums.iter_mut().for_each(|sum| sum.fill(0.0)));
@@ -60,10 +65,10 @@ impl Trainer {
         };
         let workers = self.workers.par_iter_mut().zip(self.sums.par_chunks_mut(each)).enumerate();
         let values: Vec<Vec<Vec<f32>>> = workers.map(run).collect();
-        let poses = [(true, batch.len()), (false, drawn.len())];
+        let poses = [(Known::Truth, batch.len()), (Known::Nothing, drawn.len()), (Known::Coarse, coarse.len())];
         self.descend(done + 1, rate);
         let mean = |(i, term): (usize, &crate::loss::Term)| {
-            let read = poses.iter().filter(|(is_simulated, _)| !term.reads(*is_simulated).is_empty());
+            let read = poses.iter().filter(|(known, _)| term.reads_any(*known));
             let count: usize = read.map(|(_, count)| count).sum();
             values.iter().flatten().map(|values| values[i]).sum::<f32>() / count.max(1) as f32
         };

@@ -10,6 +10,7 @@ mod layers;
 mod obstacle;
 mod part;
 mod pose;
+mod relaxed;
 mod rescue;
 pub(super) mod scene;
 mod sphere;

@@ -206,7 +206,10 @@ fn validation_is_a_tenth_of_the_training_clips() {
     assert!(validation.iter().all(|sample| (41..45).contains(&sample.record.frame)));
     let mut mixed = dataset(2, 50);
     mixed.mixed = mixed.samples[..3].to_vec();
-    let Slices { train, mixed: count, validation, .. } = slices(&mixed).unwrap();
+    mixed.coarse = mixed.samples[..2].to_vec();
+    let whole = slices(&mixed).unwrap();
+    assert_eq!((whole.coarse.len(), whole.learned().len()), (2, 87), "coarse poses stand apart");
+    let Slices { train, mixed: count, validation, .. } = whole;
     assert_eq!(
         (train.len(), count, validation.len(), mixed.split(Split::Test).len()),
         (85, 3, 8, 10),

@@ -1,5 +1,6 @@
 //! Gradients against central differences; what the tape refuses; the loss falls.
 
+mod coarse;
 mod energy;
 mod fit;
 mod operation;
@@ -131,7 +132,7 @@ fn whole_network() {
     let Trainer { recording, workers, items, parameters, .. } = &mut trainer;
     let Worker { lane, losses, .. } = &mut workers[0];
     items[0].learn(recording, &parameters.shared, lane, losses, 1);
-    let targets = items[0].targets.as_ref().unwrap();
+    let targets = &items[0].targets;
     // The coarse loss alone for what only the skeleton stream trains, the sum for the skin weights, the fine loss for
     // the rest: the fine loss does not reach the skeleton stream, by design.
     let is_skeleton = |name: &str| name == ctsn_core::model::SKELETON_BASIS || name.starts_with("embedding.");

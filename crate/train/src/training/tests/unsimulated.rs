@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::body::body;
-use crate::loss::{Losses, Scene};
+use crate::loss::{Known, Losses, Scene};
 use crate::synthetic;
 use ctsn_core::model::Storage;
 use ctsn_core::network::skin;
@@ -47,7 +47,7 @@ fn poses_without_truth_teach_to_stay_outside_the_body() {
     let poses = Unsimulated::new(&model, &outside, &setup, &samples, &settings).unwrap().expect("limbs to mix");
     let mut unseen = poses.draw(&model, 1_000_000).unwrap();
     // Read as simulated ones are: both streams.
-    unseen.iter_mut().for_each(|item| item.targets = Some(vec![Vec::new()]));
+    unseen.iter_mut().for_each(|item| (item.known, item.targets) = (Known::Truth, vec![Vec::new()]));
     let inside = |trained: &HostModel| {
         let (recording, shared, _) = Recording::new(trained, settings.variant, Streams::Both);
         let mut lane = recording.lane(&shared).unwrap();

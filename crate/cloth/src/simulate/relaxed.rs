@@ -1,0 +1,86 @@
+//! Relaxation from where the cloth is thought to be, a network's prediction, without a path. simulation.md §2.4.
+
+use glam::{DAffine3, DVec3};
+
+use super::level::Level;
+use super::newton::Solver;
+use super::outcome::{Outcome, Status};
+use super::posed::PosedBody;
+use super::simulator::{Inside, Simulator};
+use super::untangle::untangle;
+use ctsn_rig::Pose;
+use ctsn_rig::path::to_body_frame;
+
+/// Iterations after which a pose is given up of which there are as many as one likes.
+const TRIED: usize = 100;
+
+/// Share of the vertices that may lie inside the body where cloth was relaxed coarsely: nothing kept them out between
+/// those of the thinned garment.
+const ASTRAY: f64 = 0.01;
+
+impl Simulator {
+    /// Relaxes `pose` from `start` (body frame [n]), which may cross itself and the body a little. The equilibrium is
+    /// as true as that which [`simulate`](Self::simulate) comes to, but of all there are the one nearest to the start.
+    /// What is left out is tried again once only: a start on the wrong side of a limb stays there.
+    pub fn relax(&self, template: &[DVec3], pose: &Pose, start: &[DVec3]) -> Outcome {
+        self.relax_for(template, pose, start, self.settings.relax_iterations)
+    }
+
+    /// The same, given up where it is not at rest soon: fourteen poses of a dress came to rest within 91 iterations, and
+    /// what did not in 400 was left out after all. A fine garment begins where its thinned form comes to rest: layers
+    /// of a prediction that are jammed part there, in a tenth of the time.
+    pub fn try_relax(&self, template: &[DVec3], pose: &Pose, start: &[DVec3]) -> Outcome {
+        let coarse = self.relax_coarse(template, pose, start).filter(Outcome::converged);
+        let start = coarse.as_ref().map_or(start, |coarse| &coarse.positions);
+        self.relax_for(template, pose, start, TRIED.min(self.settings.relax_iterations))
+    }
+
+    fn relax_for(&self, template: &[DVec3], pose: &Pose, start: &[DVec3], iterations: usize) -> Outcome {
+        if let Err(reason) = self.check(template, pose).and_then(|()| self.check_cloth("start", start)) {
+            return self.refuse(reason);
+        }
+        let (solver, body) = self.begin(&self.level, template, start.to_vec(), pose);
+        self.settle(solver, &body, iterations, 1, pose, DAffine3::IDENTITY)
+    }
+
+    /// The same on the thinned garment as which a fine one travels, the fine one laid on what comes of it: a tenth of
+    /// the time, and where the cloth lies without its fine folds. `None` for a garment that is not fine.
+    pub fn relax_coarse(&self, template: &[DVec3], pose: &Pose, start: &[DVec3]) -> Option<Outcome> {
+        let (coarse, level) = self.coarse.as_ref()?;
+        if let Err(reason) = self.check(template, pose).and_then(|()| self.check_cloth("start", start)) {
+            return Some(self.refuse(reason));
+        }
+        let (mut solver, body) = self.begin(level, &coarse.restrict(template), coarse.restrict(start), pose);
+        let relaxed = solver.relax(Some(&body), self.settings.relax_iterations);
+        let mut laid = coarse.prolong(template, &solver.positions);
+        untangle(&self.level.cloth.elements, &self.level.rings, &mut laid);
+        let mut fine = self.level.solver(&self.settings, laid);
+        fine.iterations = solver.iterations;
+        let (mut outcome, Inside { free, .. }) = self.measured(&fine, relaxed, pose, DAffine3::IDENTITY);
+        let most = (ASTRAY * start.len() as f64) as usize;
+        let astray = || {
+            (free.len() > most).then(|| format!("wanted at most {most} vertices inside the body, found {}", free.len()))
+        };
+        if let Some(reason) = self.unrest(&outcome).or_else(astray) {
+            outcome.status = Status::Rejected { reason };
+        }
+        Some(outcome)
+    }
+
+    /// A garment at `start` (body frame), smoothed where it crosses itself, on the body in `pose`; `template` its own.
+    fn begin<'a>(
+        &'a self,
+        level: &'a Level,
+        template: &[DVec3],
+        mut start: Vec<DVec3>,
+        pose: &Pose,
+    ) -> (Solver<'a>, PosedBody<'a>) {
+        untangle(&level.cloth.elements, &level.rings, &mut start);
+        let mut solver = level.solver(&self.settings, start);
+        let end = self.character.skinning(&to_body_frame(&self.character, pose));
+        let heights = self.cover.heights(&self.body.posed(pose), &self.collider, &end);
+        let body = self.collider.raised(&end, &heights, 1.0);
+        level.pin(&mut solver, template, &end);
+        (solver, body)
+    }
+}

@@ -1,0 +1,63 @@
+//! Relaxation from a start that is near, of the garment itself and of its thinned form.
+
+use glam::DVec3;
+
+use super::pose::{simulator, stride};
+use super::scene::{legs, skirt};
+use crate::simulate::{Outcome, Status};
+
+fn mean(a: &[DVec3], b: &[DVec3]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a.distance(*b)).sum::<f64>() / a.len() as f64
+}
+
+/// As a prediction would lie: waves of so many metres on what is true.
+fn waved(truth: &[DVec3], height: f64) -> Vec<DVec3> {
+    truth.iter().map(|p| *p + height * DVec3::new((40.0 * p.y).sin(), 0.0, (40.0 * p.x).sin())).collect()
+}
+
+#[test]
+fn from_a_start_near_it_a_pose_comes_to_the_same_rest() {
+    let character = legs();
+    let simulator = simulator(&character, skirt(30, 9), 30).unwrap();
+    let template = simulator.drape().unwrap();
+    let pose = stride(&character, 40.0, 20.0, 10.0);
+    let along_the_path = simulator.simulate(&template, &pose);
+    let start = waved(&along_the_path.positions, 0.01);
+    let relaxed = simulator.relax(&template, &pose, &start);
+    assert!(relaxed.converged(), "{:?}", relaxed.status);
+    let [before, after] = [&start, &relaxed.positions].map(|state| mean(state, &along_the_path.positions));
+    assert!(before > 5e-3 && after < 0.5 * before, "{before} m away at first, {after} in the end");
+    assert_eq!(relaxed, simulator.relax(&template, &pose, &start), "no state is kept");
+    assert_eq!(relaxed, simulator.try_relax(&template, &pose, &start), "at rest soon");
+    assert_eq!(simulator.relax_coarse(&template, &pose, &start), None, "this skirt is not fine");
+    for bad in [&start[1..], &vec![DVec3::NAN; start.len()][..]] {
+        let Status::Rejected { reason } = simulator.relax(&template, &pose, bad).status else { panic!("accepted") };
+        assert!(reason.contains("start: wanted") && reason.contains("found"), "{reason}");
+    }
+}
+
+/// 2,976 vertices, relaxed as 1,500.
+#[test]
+fn a_fine_skirt_is_laid_where_its_coarse_one_comes_to_rest() {
+    let character = legs();
+    let simulator = simulator(&character, skirt(96, 30), 96).unwrap();
+    assert!(simulator.is_fine());
+    let template = simulator.drape().unwrap();
+    let pose = stride(&character, 40.0, 20.0, 10.0);
+    let fine = simulator.simulate(&template, &pose);
+    let start = waved(&fine.positions, 0.03);
+    let coarse = simulator.relax_coarse(&template, &pose, &start).expect("a fine skirt");
+    assert!(coarse.converged() && coarse.residual < 1e-2, "{:?}", coarse.status);
+    let [before, after] = [&start, &coarse.positions].map(|state| mean(state, &fine.positions));
+    assert!(before > 0.02 && after < 0.5 * before, "{before} m away at first, {after} in the end");
+    let Some(Outcome { status: Status::Rejected { reason }, .. }) =
+        simulator.relax_coarse(&template, &pose, &start[1..])
+    else {
+        panic!("accepted")
+    };
+    assert!(reason.contains("start: wanted 2976"), "{reason}");
+    // A tenth of a metre aside, through both legs.
+    let aside: Vec<DVec3> = start.iter().map(|p| *p + 0.1 * DVec3::X).collect();
+    let outcome = simulator.relax_coarse(&template, &pose, &aside).expect("a fine skirt");
+    assert!(outcome.positions.iter().all(|p| p.is_finite()), "finite in every case");
+}
