@@ -11,7 +11,7 @@ import { FabricPanel } from './fabric/panel.js';
 import { Samples } from './fabric/samples.js';
 import { Character, RATE } from './figure/character.js';
 import { Dressed } from './figure/dressed.js';
-import { fetchBytes } from './figure/fetch.js';
+import { fetchBytes, fetchModels } from './figure/fetch.js';
 import { Maps } from './maps/maps.js';
 import { Transport } from './motion/transport.js';
 import { Poser } from './pose/poser.js';
@@ -35,7 +35,7 @@ export class TryOn {
   /** Predictions since the page was opened. */
   predictions = 0;
   dressed!: Dressed;
-  readonly #cast: Figure[];
+  readonly figures: Figure[];
   readonly #rail = new Rail();
   readonly #fabric = new FabricPanel();
   readonly #samples: Samples;
@@ -52,7 +52,7 @@ export class TryOn {
 
   constructor(stage: Stage, cast: Figure[]) {
     this.stage = stage;
-    this.#cast = cast;
+    this.figures = cast;
     this.#samples = new Samples((object) => stage.prepare(object));
     this.#poser = new Poser(stage);
     this.#rivals = new Rivals(stage);
@@ -60,35 +60,37 @@ export class TryOn {
     this.#listen();
   }
 
-  get figures(): readonly Figure[] {
-    return this.#cast;
-  }
-
   /** Shows a figure in these garments; what was shown stays until it is there. Overtaken calls end unseen. */
   async choose(entry: Figure, wear = entry.garments.slice(0, 1), onProgress?: (file: string, progress: Progress) => void): Promise<Dressed> {
     const turn = ++this.#turn;
-    // What draws it all is compiled while the files come.
-    for (const garment of wear) void this.#samples.prepare(garment, false);
+    // What draws it all is compiled while the files come; behind them, where that takes long and nothing is seen.
+    const isSlow = this.#isSlow(wear);
+    const prepare = () => Promise.all(wear.map((look) => this.#samples.prepare(look, false)));
+    void isSlow.then((slow) => void (slow || prepare()));
+    fetchModels(wear);
     const bytes = await fetchBytes(entry, (progress) => onProgress?.('figure', progress));
     const character = await Character.parse(bytes, entry.name);
-    // Of the first figure a sketch is drawn meanwhile.
-    const isFirst = !(this.dressed as Dressed | undefined);
-    const dressed = new Dressed(entry, character, async (look) => {
-      const prepared = this.#samples.prepare(look, this.dressed === dressed);
-      if (this.dressed) await prepared;
-    });
+    const isShown = () => this.dressed === dressed;
+    const dressed = new Dressed(entry, character, async (look) => isShown() || !(await isSlow) ? this.#samples.prepare(look, isShown()) : undefined);
     dressed.backend = this.cost.backend;
     if (character.clips[0]) character.show(character.clips[0], 0);
     const worn = dressed.wear(wear, (progress) => onProgress?.('model', progress));
-    const [came] = await Promise.allSettled([worn, this.stage.prepare(character.scene)].slice(0, isFirst ? 1 : 2));
+    const slow = await isSlow;
+    const [came] = await Promise.allSettled([worn, slow || this.stage.prepare(character.scene)]);
     if (came.status === 'rejected' || turn !== this.#turn) {
       dressed.dispose();
       if (came.status === 'rejected') throw came.reason;
       return this.dressed;
     }
     this.#replace(dressed);
-    if (isFirst) this.stage.finish();
+    const complete = Promise.allSettled(dressed.models.map((model) => model.complete));
+    if (slow) this.stage.sketch(complete, () => Promise.all([prepare(), this.stage.prepare(character.scene)]));
     return dressed;
+  }
+
+  /** Whether these are the first garments of all, and what is to draw them takes long to link. */
+  async #isSlow([first]: readonly GarmentEntry[]): Promise<boolean> {
+    return !(this.dressed as Dressed | undefined) && first !== undefined && this.stage.isSlow(this.#samples.piece(first));
   }
 
   /** Puts these garments on. */
@@ -138,12 +140,9 @@ export class TryOn {
     dressed.update(this.quality, this.transport.playing ? BLEND : 0);
     this.predictions++;
     const end = () => this.cost.add(performance.now() - start);
-    if (dressed.models.some(({ backend }) => backend === 'webgpu')) {
-      void dressed.wardrobe.settled().then(() => {
-        end();
-        this.#arrived = true;
-      });
-    } else end();
+    const late = dressed.models.some(({ backend }) => backend === 'webgpu');
+    if (late) void dressed.wardrobe.settled().then(() => (end(), (this.#arrived = true)));
+    else end();
   }
 
   /** Stops the page at a frame of a clip. */
@@ -188,7 +187,7 @@ export class TryOn {
       const name = file.name.replace(/\.glb$/i, '');
       const entry = { id: file.name, name, file: URL.createObjectURL(file), bytes: file.size, garments: [] };
       await this.choose(entry);
-      this.#cast.push(entry);
+      this.figures.push(entry);
       this.#tell();
     }
     for (const file of files.filter((file) => kind(file) === 'safetensors')) await this.#bringGarment(file);
@@ -254,7 +253,7 @@ export class TryOn {
   #tell(): void {
     const { entry, worn, looks } = this.dressed;
     this.#changed = true;
-    this.#rail.show(this.#cast, entry, worn.map(({ entry }) => entry));
+    this.#rail.show(this.figures, entry, worn.map(({ entry }) => entry));
     this.#fabric.show(worn.map(({ entry }) => ({ entry, look: looks.get(entry)! })));
     this.cost.tell(this.dressed);
     this.#simulated.offer(this.dressed);

@@ -49,6 +49,7 @@ function keepAddress(page: TryOn, query: URLSearchParams): void {
   let waiting = 0;
   const clips = new Clips(page);
   clips.tell();
+  void page.stage.finished.then(() => clips.tell());
   page.onScene = () => {
     clips.tell();
     clearTimeout(waiting);

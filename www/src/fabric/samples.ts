@@ -21,19 +21,22 @@ export class Samples {
 
   /** Settles when cloth of this look can be drawn at once; `fading`: while it comes into sight, too. */
   async prepare(look: Look, fading: boolean): Promise<void> {
-    await Promise.all([this.#piece(look, false), fading && this.#piece(look, true)]);
+    await Promise.all([this.#compiledFor(look, false), fading && this.#compiledFor(look, true)]);
   }
 
-  #piece(look: Look, transparent: boolean): Promise<void> {
+  /** A piece of cloth of this look. */
+  piece(look: Look, transparent = false): Mesh {
+    const material = this.#materials.get(look.fabric) ?? new FabricMaterial(look);
+    this.#materials.set(look.fabric, material);
+    const piece = new Mesh(this.#geometry, transparent ? Object.assign(material.clone(), { transparent }) : material);
+    piece.receiveShadow = true;
+    return piece;
+  }
+
+  #compiledFor(look: Look, transparent: boolean): Promise<void> {
     const key: `${FabricName} ${boolean}` = `${look.fabric} ${transparent}`;
     let compiled = this.#compiled.get(key);
-    if (!compiled) {
-      const material = this.#materials.get(look.fabric) ?? new FabricMaterial(look);
-      this.#materials.set(look.fabric, material);
-      const piece = new Mesh(this.#geometry, transparent ? Object.assign(material.clone(), { transparent }) : material);
-      piece.receiveShadow = true;
-      this.#compiled.set(key, (compiled = this.#compile(piece)));
-    }
+    if (!compiled) this.#compiled.set(key, (compiled = this.#compile(this.piece(look, transparent))));
     return compiled;
   }
 }

@@ -1,5 +1,10 @@
-import type { Progress } from 'ctsn';
-import type { Figure } from '../cast/catalogue.js';
+import { preload, type Progress } from 'ctsn';
+import type { Figure, GarmentEntry } from '../cast/catalogue.js';
+
+/** Has the models of garments come beside the figure. Where one cannot be had, whoever puts it on is told. */
+export function fetchModels(garments: readonly GarmentEntry[]): void {
+  for (const { file } of garments) void preload(file, { cache: file.startsWith('blob:') ? undefined : 'ctsn' }).catch(() => undefined);
+}
 
 /** The file of a figure [bytes]. */
 export async function fetchBytes({ file, name }: Figure, onProgress: (progress: Progress) => void): Promise<ArrayBuffer> {

@@ -1,8 +1,8 @@
 import { HemisphereLight, Mesh, MeshLambertMaterial, MeshStandardMaterial, type Light, type Material, type Scene } from 'three';
 
 /**
- * Draws a scene before the programs that are to draw it are there: matt, in its own colours, without shadows. Some of
- * these programs take a browser that draws in software seconds to link; those of a sketch take a tenth of that.
+ * Draws a scene before the programs that are to draw it are there: matt, in its own colours, without shadows. A browser
+ * that draws in software takes seconds to link these programs, and a fraction of one for those of a sketch.
  */
 export class Sketch {
   readonly #sky = new HemisphereLight('#fff', '#b9a48d', 2.2);

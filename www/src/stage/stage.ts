@@ -33,6 +33,8 @@ export interface View {
 }
 
 const FIELD = 28;
+/** Milliseconds that the first drawing with a program of a sketch may take. Software takes 200 to 400. */
+const SLOW = 100;
 /** Degrees around and up, a factor of the distance, and heights up. */
 const KEYS: Readonly<Record<string, readonly [number, number, number, number]>> = {
   ArrowLeft: [-10, 0, 1, 0],
@@ -46,6 +48,8 @@ const KEYS: Readonly<Record<string, readonly [number, number, number, number]>> 
 };
 /** As far above and below its middle as a figure is looked at, in its heights. */
 const LIFT = 0.5;
+
+const frame = () => new Promise((resolve) => requestAnimationFrame(resolve));
 
 /** Renderer, camera, light and floor of the page. */
 export class Stage {
@@ -64,9 +68,9 @@ export class Stage {
   #middle = 0.9;
   #changed = true;
   #margins: Margins = { left: 0, right: 0, top: 0, bottom: 0 };
-  /** Draws until the first programs are there. */
-  #sketch: Sketch | undefined = new Sketch();
-  #compiling: Promise<unknown> = Promise.resolve();
+  readonly #trial = new Sketch();
+  /** What draws, where it is not the renderer by itself. */
+  #sketch: Sketch | undefined;
 
   constructor(canvas: HTMLCanvasElement) {
     this.#canvas = canvas;
@@ -169,18 +173,49 @@ export class Stage {
     const { renderer, camera, scene } = this;
     // Without that extension nothing tells when a program is there: three would warn, and not wait.
     if (!renderer.extensions.has('KHR_parallel_shader_compile')) return void renderer.compile(object, camera, scene);
-    const compiled = renderer.compileAsync(object, camera, scene);
-    this.#compiling = Promise.all([this.#compiling, compiled]);
-    await compiled;
+    await renderer.compileAsync(object, camera, scene);
   }
 
-  /** Draws sketches until all is compiled that was asked for by now. */
-  finish(): void {
-    this.finished = this.#compiling.then(() => {
-      this.#sketch?.dispose();
+  /** Whether what is drawn is a sketch. */
+  get isSketching(): boolean {
+    return this.#sketch !== undefined;
+  }
+
+  /** Whether this machine takes so long over a program that sketches should be drawn first: that of `piece` tells. */
+  async isSlow(piece: Object3D): Promise<boolean> {
+    const { renderer, camera, scene } = this;
+    const start = performance.now();
+    scene.add(piece);
+    this.#trial.of(scene, this.#sun, () => renderer.render(scene, camera));
+    scene.remove(piece);
+    await this.#passed();
+    return performance.now() - start > SLOW;
+  }
+
+  /** Draws sketches from now on, until what is to draw is prepared. That begins when `seen` is settled, and on the screen. */
+  sketch(seen: Promise<unknown>, prepare: () => Promise<unknown>): void {
+    this.#sketch = this.#trial;
+    const mark = async (name: string) => {
+      // A frame that is drawn wholly after this.
+      await frame();
+      await frame();
+      await this.#passed();
+      performance.mark(`ctsn ${name}`);
+    };
+    const end = () => {
       this.#sketch = undefined;
       this.#changed = true;
-    });
+    };
+    this.finished = mark('cloth').then(() => seen).then(() => mark('folds')).then(prepare).then(end);
+  }
+
+  /** Settles when the GPU has done all that it was told until now. */
+  async #passed(): Promise<void> {
+    const gl = this.renderer.getContext() as WebGL2RenderingContext;
+    const sync = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+    gl.flush();
+    while (sync && !gl.isContextLost() && gl.getSyncParameter(sync, gl.SYNC_STATUS) !== gl.SIGNALED) await frame();
+    gl.deleteSync(sync);
   }
 
   render(): void {
