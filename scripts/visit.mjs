@@ -64,8 +64,8 @@ async function visit(browser, origin) {
   await page.goto(origin, { waitUntil: 'commit' });
   await page.waitForFunction(() => window.ctsnDemo?.ready, undefined, { polling: 20, timeout: 120_000 });
   const ready = bytes;
-  // Where a sketch is drawn first, the page tells when its GPU had done so: a frame that is asked for from here would come
-  // behind all that draws it as it is to look.
+  // Where a sketch is drawn first, the page tells when its GPU had done so: a frame that is asked for from here would
+  // come behind all that draws it as it is to look.
   await page.evaluate(() => window.ctsnDemo.finished());
   const [cloth, folds] = await page.evaluate(() => ['cloth', 'folds'].map((name) => performance.getEntriesByName(`ctsn ${name}`)[0]?.startTime));
   const seen = async (milliseconds, bytes) => (milliseconds === undefined ? passed() : { milliseconds, bytes });

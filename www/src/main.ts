@@ -101,8 +101,7 @@ async function start(): Promise<void> {
 /** The page's handle. */
 function offer(page: TryOn, arrange: () => void): void {
   const captured = async () => {
-    await hook.complete!();
-    await page.stage.finished;
+    await Promise.all([hook.complete!(), page.stage.finished]);
     // What was changed a moment ago waits for the next animation frame to be drawn.
     page.predict();
     await page.dressed.wardrobe.settled();
@@ -135,9 +134,7 @@ function offer(page: TryOn, arrange: () => void): void {
         page.draw();
       }
     },
-    async choose(figure) {
-      await page.choose(page.figures.find(({ id }) => id === figure)!);
-    },
+    choose: async (figure) => void (await page.choose(page.figures.find(({ id }) => id === figure)!)),
     async picture(width, height) {
       await page.stage.finished;
       // The controls are not in it.

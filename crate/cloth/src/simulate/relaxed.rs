@@ -26,9 +26,9 @@ impl Simulator {
         self.relax_for(template, pose, start, self.settings.relax_iterations)
     }
 
-    /// The same, given up where it is not at rest soon: fourteen poses of a dress came to rest within 91 iterations, and
-    /// what did not in 400 was left out after all. A fine garment begins where its thinned form comes to rest: layers
-    /// of a prediction that are jammed part there, in a tenth of the time.
+    /// The same, given up where it is not at rest soon: fourteen poses of a dress came to rest within 91 iterations,
+    /// and what did not in 400 was left out after all. A fine garment begins where its thinned form comes to rest:
+    /// layers of a prediction that are jammed part there, in a fifth of the time.
     pub fn try_relax(&self, template: &[DVec3], pose: &Pose, start: &[DVec3]) -> Outcome {
         let coarse = self.relax_coarse(template, pose, start).filter(Outcome::converged);
         let start = coarse.as_ref().map_or(start, |coarse| &coarse.positions);
@@ -43,7 +43,7 @@ impl Simulator {
         self.settle(solver, &body, iterations, 1, pose, DAffine3::IDENTITY)
     }
 
-    /// The same on the thinned garment as which a fine one travels, the fine one laid on what comes of it: a tenth of
+    /// The same on the thinned garment as which a fine one travels, the fine one laid on what comes of it: a sixth of
     /// the time, and where the cloth lies without its fine folds. `None` for a garment that is not fine.
     pub fn relax_coarse(&self, template: &[DVec3], pose: &Pose, start: &[DVec3]) -> Option<Outcome> {
         let (coarse, level) = self.coarse.as_ref()?;

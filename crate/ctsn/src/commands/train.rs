@@ -73,11 +73,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let files = Files { checkpoint: output.with_extension("checkpoint"), curve: output.with_extension("curve.csv") };
     // Before the training: an unusable body must not be found out after hours.
     let body = body(&dataset.setup, &slices.learned())?;
-    let mirrored = |samples: &[&Sample]| match arguments.self_supervised {
-        true => Ok(Vec::new()),
-        false => training::mirrored(&dataset.setup, samples),
-    };
-    let [images, coarse] = [mirrored(&slices.train)?, mirrored(&slices.coarse)?];
+    let [images, coarse] = images(arguments, &dataset.setup, &slices)?;
     slices.add(&images, &coarse);
     let by: By = match arguments {
         Arguments { self_supervised: true, .. } => Trainer::self_supervised,
@@ -123,6 +119,14 @@ pub fn run(arguments: &Arguments) -> Result<()> {
             }
         }
     }
+}
+
+/// The poses to learn from in a mirror, fine and coarse: none without truth.
+fn images(arguments: &Arguments, setup: &Setup, slices: &Slices) -> Result<[Vec<Sample>; 2]> {
+    if arguments.self_supervised {
+        return Ok(Default::default());
+    }
+    Ok([training::mirrored(setup, &slices.train)?, training::mirrored(setup, &slices.coarse)?])
 }
 
 /// What to train with: without truth all there is, for nothing of it shows an error.

@@ -27,8 +27,8 @@ pub struct Request<'a> {
     pub poses: Option<usize>,
     /// How many mixed poses to simulate as well, for training.
     pub mixed: usize,
-    /// How many poses to simulate coarsely as well, for training, from the teacher's predictions; none of a garment that
-    /// is not fine.
+    /// How many poses to simulate coarsely as well, for training, from the teacher's predictions; none of a garment
+    /// that is not fine.
     pub coarse: usize,
     /// Poses to simulate a second time, a little changed, for the noise floor.
     pub twins: usize,

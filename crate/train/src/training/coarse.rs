@@ -1,5 +1,5 @@
-//! Poses whose cloth was simulated coarsely: where it lies, without its fine folds. They cost a tenth of others and teach
-//! the skeleton stream, whose target is smooth anyhow: how cloth lies in poses of which there is no fine truth.
+//! Poses whose cloth was simulated coarsely: where it lies, without its fine folds. They cost a sixth of others and
+//! teach the skeleton stream, whose target is smooth anyhow, how cloth lies where there is no fine truth.
 
 use super::item::Item;
 use super::recording::Recording;

@@ -195,8 +195,8 @@ impl Trainer {
         Ok(trainer)
     }
 
-    /// Adds poses of the same garment and character whose cloth was simulated coarsely. They are no part of an epoch: as
-    /// many are drawn for each step as come to one of each, up to four times the batch.
+    /// Adds poses of the same garment and character whose cloth was simulated coarsely. They are no part of an epoch:
+    /// as many are drawn for each step as come to one of each, up to four times the batch.
     pub fn add_coarse(&mut self, setup: &Setup, samples: &[&Sample]) -> Result<()> {
         let Some(Worker { losses, .. }) = self.workers.first() else { return Ok(()) };
         self.coarse = Coarse::new(&self.model, samples, losses, &self.settings, self.steps())?;
