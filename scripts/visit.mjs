@@ -83,6 +83,7 @@ async function change(browser, origin) {
   page.setDefaultTimeout(120_000);
   await page.goto(origin);
   await page.waitForFunction(() => window.ctsnDemo?.ready);
+  await page.evaluate(() => window.ctsnDemo.finished());
   const measured = await page.evaluate(async (changes) => {
     const demo = window.ctsnDemo;
     const [[, garments]] = Object.entries(demo.cast);

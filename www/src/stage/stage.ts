@@ -192,7 +192,7 @@ export class Stage {
     return performance.now() - start > SLOW;
   }
 
-  /** Draws sketches from now on, until what is to draw is prepared. That begins when `seen` has settled and was drawn. */
+  /** Draws sketches until what is to draw is prepared, which begins when `seen` has settled and was drawn. */
   sketch(seen: Promise<unknown>, prepare: () => Promise<unknown>): void {
     this.#sketch = this.#trial;
     const mark = async (name: string) => {
