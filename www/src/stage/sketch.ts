@@ -2,7 +2,7 @@ import { HemisphereLight, Mesh, MeshLambertMaterial, MeshStandardMaterial, type 
 
 /**
  * Draws a scene before the programs that are to draw it are there: matt, in its own colours, without shadows. A browser
- * that draws in software takes seconds to link these programs, and a fraction of one for those of a sketch.
+ * that draws in software takes seconds for the first drawing with these, and a fraction of one with those of a sketch.
  */
 export class Sketch {
   readonly #sky = new HemisphereLight('#fff', '#b9a48d', 2.2);
