@@ -64,7 +64,8 @@ export class TryOn {
   async choose(entry: Figure, wear = entry.garments.slice(0, 1), onProgress?: (file: string, progress: Progress) => void): Promise<Dressed> {
     const turn = ++this.#turn;
     // What draws it all is compiled while the files come; behind them, where that takes long and nothing is seen.
-    const isSlow = this.#isSlow(wear);
+    const [first] = wear;
+    const isSlow = first && this.predictions === 0 ? this.stage.isSlow(this.#samples.piece(first)) : Promise.resolve(false);
     const prepare = () => Promise.all(wear.map((look) => this.#samples.prepare(look, false)));
     void isSlow.then((slow) => void (slow || prepare()));
     fetchModels(wear);
@@ -83,14 +84,8 @@ export class TryOn {
       return this.dressed;
     }
     this.#replace(dressed);
-    const complete = Promise.allSettled(dressed.models.map((model) => model.complete));
-    if (slow) this.stage.sketch(complete, () => Promise.all([prepare(), this.stage.prepare(character.scene)]));
+    if (slow) this.stage.sketch(dressed.complete, () => Promise.all([prepare(), this.stage.prepare(character.scene)]));
     return dressed;
-  }
-
-  /** Whether these are the first garments of all, and what is to draw them takes long to link. */
-  async #isSlow([first]: readonly GarmentEntry[]): Promise<boolean> {
-    return !(this.dressed as Dressed | undefined) && first !== undefined && this.stage.isSlow(this.#samples.piece(first));
   }
 
   /** Puts these garments on. */
@@ -141,8 +136,11 @@ export class TryOn {
     this.predictions++;
     const end = () => this.cost.add(performance.now() - start);
     const late = dressed.models.some(({ backend }) => backend === 'webgpu');
-    if (late) void dressed.wardrobe.settled().then(() => (end(), (this.#arrived = true)));
-    else end();
+    if (!late) return end();
+    void dressed.wardrobe.settled().then(() => {
+      end();
+      this.#arrived = true;
+    });
   }
 
   /** Stops the page at a frame of a clip. */

@@ -147,7 +147,7 @@ function offer(page: TryOn, arrange: () => void): void {
         reader.readAsDataURL(blob);
       });
     },
-    complete: () => Promise.all(page.dressed.models.map(({ complete }) => complete)),
+    complete: () => page.dressed.complete,
     finished: () => page.stage.finished,
     memory() {
       // What was put on a moment ago is on the GPU once it is drawn.

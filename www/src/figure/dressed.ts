@@ -6,6 +6,7 @@ import { fabrics, type Look } from '../fabric/fabrics.js';
 import { Hem } from '../fabric/hem.js';
 import { FabricMaterial, projectFront, type Picture } from '../fabric/material.js';
 import type { Character } from './character.js';
+import { cacheOf } from './fetch.js';
 
 /** A garment as it is worn. */
 export interface Worn {
@@ -43,10 +44,8 @@ export class Dressed {
       material: (id) => this.#material(id),
       covered: coveredSkin,
       load: async (source, options) => {
-        // What was dropped on the page is kept by nobody.
-        const cache = String(source).startsWith('blob:') ? undefined : 'ctsn';
         const garment = entry.garments.find(({ file }) => file === source)!;
-        const loaded = loadModel(source, { ...options, progressive: true, cache });
+        const loaded = loadModel(source, { ...options, progressive: true, cache: cacheOf(source) });
         const [model]: [ClothModel, void] = await Promise.all([loaded, prepare(this.looks.get(garment)!)]);
         for (const event of ['backend', 'complete']) model.addEventListener(event, () => this.onModel());
         // What broke off leaves the drape; who took the garment off meanwhile need not know.
@@ -65,6 +64,11 @@ export class Dressed {
   /** The models of what is worn. */
   get models(): readonly ClothModel[] {
     return this.#worn.map(({ cloth }) => cloth.model);
+  }
+
+  /** Settles when the models of what is worn have their folds. */
+  get complete(): Promise<unknown> {
+    return Promise.all(this.models.map(({ complete }) => complete));
   }
 
   /** Puts these garments on, and takes all others off; false if overtaken by another call. */

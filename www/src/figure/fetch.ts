@@ -1,9 +1,12 @@
-import { preload, type Progress } from 'ctsn';
+import { preload, type ModelSource, type Progress } from 'ctsn';
 import type { Figure, GarmentEntry } from '../cast/catalogue.js';
+
+/** Where a model's file is kept for the next visit; what was dropped on the page is kept by nobody. */
+export const cacheOf = (source: ModelSource) => (String(source).startsWith('blob:') ? undefined : 'ctsn');
 
 /** Has the models of garments come beside the figure. Where one cannot be had, whoever puts it on is told. */
 export function fetchModels(garments: readonly GarmentEntry[]): void {
-  for (const { file } of garments) void preload(file, { cache: file.startsWith('blob:') ? undefined : 'ctsn' }).catch(() => undefined);
+  for (const { file } of garments) void preload(file, { cache: cacheOf(file) }).catch(() => undefined);
 }
 
 /** The file of a figure [bytes]. */

@@ -68,9 +68,8 @@ export class Stage {
   #middle = 0.9;
   #changed = true;
   #margins: Margins = { left: 0, right: 0, top: 0, bottom: 0 };
-  readonly #trial = new Sketch();
-  /** What draws, where it is not the renderer by itself. */
-  #sketch: Sketch | undefined;
+  readonly #sketch = new Sketch();
+  #sketching = false;
 
   constructor(canvas: HTMLCanvasElement) {
     this.#canvas = canvas;
@@ -172,13 +171,13 @@ export class Stage {
   async prepare(object: Object3D): Promise<void> {
     const { renderer, camera, scene } = this;
     // Without that extension nothing tells when a program is there: three would warn, and not wait.
-    if (!renderer.extensions.has('KHR_parallel_shader_compile')) return void renderer.compile(object, camera, scene);
-    await renderer.compileAsync(object, camera, scene);
+    if (renderer.extensions.has('KHR_parallel_shader_compile')) await renderer.compileAsync(object, camera, scene);
+    else renderer.compile(object, camera, scene);
   }
 
   /** Whether what is drawn is a sketch. */
   get isSketching(): boolean {
-    return this.#sketch !== undefined;
+    return this.#sketching;
   }
 
   /** Whether this machine takes so long over a program that sketches should be drawn first: that of `piece` tells. */
@@ -186,7 +185,7 @@ export class Stage {
     const { renderer, camera, scene } = this;
     const start = performance.now();
     scene.add(piece);
-    this.#trial.of(scene, this.#sun, () => renderer.render(scene, camera));
+    this.#sketch.of(scene, this.#sun, () => renderer.render(scene, camera));
     scene.remove(piece);
     await this.#passed();
     return performance.now() - start > SLOW;
@@ -194,7 +193,7 @@ export class Stage {
 
   /** Draws sketches until what is to draw is prepared, which begins when `seen` has settled and was drawn. */
   sketch(seen: Promise<unknown>, prepare: () => Promise<unknown>): void {
-    this.#sketch = this.#trial;
+    this.#sketching = true;
     const mark = async (name: string) => {
       // A frame that is drawn wholly after this.
       await frame();
@@ -203,10 +202,12 @@ export class Stage {
       performance.mark(`ctsn ${name}`);
     };
     const end = () => {
-      this.#sketch = undefined;
+      this.#sketching = false;
+      this.#sketch.dispose();
       this.#changed = true;
     };
-    this.finished = mark('cloth').then(() => seen).then(() => mark('folds')).then(prepare).then(end);
+    const settled = () => Promise.allSettled([seen]);
+    this.finished = mark('cloth').then(settled).then(() => mark('folds')).then(prepare).then(end, end);
   }
 
   /** Settles when the GPU has done all that it was told until now. */
@@ -214,14 +215,16 @@ export class Stage {
     const gl = this.renderer.getContext() as WebGL2RenderingContext;
     const sync = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
     gl.flush();
-    while (sync && !gl.isContextLost() && gl.getSyncParameter(sync, gl.SYNC_STATUS) !== gl.SIGNALED) await frame();
+    // A page that nobody looks at has no frames.
+    const wait = () => new Promise((resolve) => setTimeout(resolve, 4));
+    while (sync && !gl.isContextLost() && gl.getSyncParameter(sync, gl.SYNC_STATUS) !== gl.SIGNALED) await wait();
     gl.deleteSync(sync);
   }
 
   render(): void {
     const { renderer, scene, camera } = this;
     const draw = () => renderer.render(scene, camera);
-    if (this.#sketch) this.#sketch.of(scene, this.#sun, draw);
+    if (this.#sketching) this.#sketch.of(scene, this.#sun, draw);
     else draw();
   }
 

@@ -36,7 +36,7 @@ impl Simulator {
     }
 
     fn relax_for(&self, template: &[DVec3], pose: &Pose, start: &[DVec3], iterations: usize) -> Outcome {
-        if let Err(reason) = self.check(template, pose).and_then(|()| self.check_cloth("start", start)) {
+        if let Err(reason) = self.check_start(template, pose, start) {
             return self.refuse(reason);
         }
         let (solver, body) = self.begin(&self.level, template, start.to_vec(), pose);
@@ -47,7 +47,7 @@ impl Simulator {
     /// the time, and where the cloth lies without its fine folds. `None` for a garment that is not fine.
     pub fn relax_coarse(&self, template: &[DVec3], pose: &Pose, start: &[DVec3]) -> Option<Outcome> {
         let (coarse, level) = self.coarse.as_ref()?;
-        if let Err(reason) = self.check(template, pose).and_then(|()| self.check_cloth("start", start)) {
+        if let Err(reason) = self.check_start(template, pose, start) {
             return Some(self.refuse(reason));
         }
         let (mut solver, body) = self.begin(level, &coarse.restrict(template), coarse.restrict(start), pose);
@@ -65,6 +65,11 @@ impl Simulator {
             outcome.status = Status::Rejected { reason };
         }
         Some(outcome)
+    }
+
+    /// Why `pose` cannot be relaxed from there.
+    fn check_start(&self, template: &[DVec3], pose: &Pose, start: &[DVec3]) -> std::result::Result<(), String> {
+        self.check(template, pose).and_then(|()| self.check_cloth("start", start))
     }
 
     /// A garment at `start` (body frame), smoothed where it crosses itself, on the body in `pose`; `template` its own.

@@ -10,23 +10,25 @@ const FIRST: usize = 1 << 32;
 /// Makes them.
 pub(super) struct CoarsePoses {
     frames: Vec<Pose>,
-    mixer: Option<Mixer>,
 }
 
 impl CoarsePoses {
-    /// Of the frames that are learned from, and of what is mixed from them.
-    pub fn new(frames: Vec<Pose>, mixer: Option<Mixer>) -> Self {
+    /// Of the frames that are learned from.
+    pub fn new(frames: &[Pose]) -> Self {
         // Fine poses are the first ones in this order: the last ones are met among them late or never.
         let frames = order(frames.len()).into_iter().rev().map(|frame| frames[frame].clone()).collect();
-        Self { frames, mixer }
+        Self { frames }
     }
 
-    /// Pose number `number`; `None` where there is none that was not there before.
-    pub fn pose(&self, number: usize) -> Option<Pose> {
-        match &self.mixer {
-            None => self.frames.get(number).cloned(),
-            Some(mixer) if number.is_multiple_of(2) => Some(mixer.pose(FIRST + number)),
-            Some(mixer) => Some(self.frames.get(number / 2).cloned().unwrap_or_else(|| mixer.pose(FIRST + number))),
-        }
+    /// Pose number `number`; `None` where nothing can be mixed and the frames are used up.
+    pub fn pose(&self, number: usize, mixer: Option<&Mixer>) -> Option<Pose> {
+        let Some(mixer) = mixer else { return self.frames.get(number).cloned() };
+        let frame = (!number.is_multiple_of(2)).then(|| self.frames.get(number / 2).cloned()).flatten();
+        Some(frame.unwrap_or_else(|| mixer.pose(FIRST + number)))
+    }
+
+    /// How many poses there are.
+    pub fn count(&self, mixer: Option<&Mixer>) -> usize {
+        if mixer.is_some() { usize::MAX } else { self.frames.len() }
     }
 }

@@ -196,11 +196,12 @@ fn coarse_poses_are_frames_and_mixtures_in_turn_and_want_a_model() {
     let (mut character, garment) = scene();
     let place = |frame: usize| vec![DAffine3::from_translation(DVec3::new(0.0, frame as f64, 0.0)); 2];
     character.clips = vec![Clip { name: "only".to_owned(), rate: 7.3, poses: (0..100).map(place).collect() }];
-    let hips = |poses: &CoarsePoses, numbers: &[usize]| -> Vec<Option<usize>> {
-        numbers.iter().map(|number| poses.pose(*number).map(|pose| pose[0].translation.y as usize)).collect()
+    let hips = |poses: &CoarsePoses, mixer: Option<&Mixer>, numbers: &[usize]| -> Vec<Option<usize>> {
+        numbers.iter().map(|number| poses.pose(*number, mixer).map(|pose| pose[0].translation.y as usize)).collect()
     };
-    let still = CoarsePoses::new(learned(&character), None);
-    let all = hips(&still, &(0..82).collect::<Vec<_>>());
+    let still = CoarsePoses::new(&learned(&character));
+    let all = hips(&still, None, &(0..82).collect::<Vec<_>>());
+    assert_eq!(still.count(None), 81);
     assert_eq!(all.last(), Some(&None), "81 frames are learned from");
     let mut sorted: Vec<usize> = all.iter().copied().flatten().collect();
     assert_eq!(sorted[80], 0, "the frame that is simulated finely first comes last");
@@ -213,9 +214,9 @@ fn coarse_poses_are_frames_and_mixtures_in_turn_and_want_a_model() {
     character.clips[0].poses.iter_mut().for_each(|pose| *pose = [&pose[..1]; 6].concat());
     let mixer = Mixer::new(&character, learned(&character), FURTHER);
     assert!(mixer.is_some());
-    let mixed = CoarsePoses::new(learned(&character), mixer);
-    assert_eq!(hips(&mixed, &[1, 3, 161]), [all[0], all[1], all[80]], "frames");
-    assert!(mixed.pose(163).is_some() && mixed.pose(0) != mixed.pose(2), "made up");
+    let (mixed, mixer) = (CoarsePoses::new(&learned(&character)), mixer.as_ref());
+    assert_eq!(hips(&mixed, mixer, &[1, 3, 161]), [all[0], all[1], all[80]], "frames");
+    assert!(mixed.pose(163, mixer).is_some() && mixed.pose(0, mixer) != mixed.pose(2, mixer), "made up");
     let tasks = tasks(&Request { coarse: 6, ..request(&character, &garment) }, 2, Path::new(""));
     assert_eq!(tasks.iter().filter(|task| task.kind == Kind::Coarse).count(), 6);
     let folder = tempfile::tempdir().unwrap();

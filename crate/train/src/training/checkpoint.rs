@@ -52,7 +52,8 @@ impl Trainer {
     pub fn key(&self) -> String {
         let (settings, terms, each) = (self.settings, loss::key(&self.terms), unsimulated::EACH);
         // Without coarse poses the key is that of versions that knew none.
-        let coarse = self.coarse.as_ref().map_or(String::new(), |_| format!("coarse {} ", coarse::EACH));
+        let coarse = self.coarse.as_ref().map(|poses| format!("coarse {} {:016x} ", coarse::EACH, poses.data));
+        let coarse = coarse.unwrap_or_default();
         format!("{settings:?} {terms} unsimulated {each} {coarse}start {:016x} data {:016x}", self.start, self.data)
     }
 }

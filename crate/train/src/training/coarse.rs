@@ -5,7 +5,7 @@ use super::item::Item;
 use super::recording::Recording;
 use super::{Losses, Settings};
 use crate::Result;
-use crate::dataset::Sample;
+use crate::dataset::{Sample, Setup, fingerprint};
 use crate::loss::Known;
 use ctsn_core::model::HostModel;
 use ctsn_core::network::Streams;
@@ -17,6 +17,8 @@ pub(super) const EACH: usize = 4;
 pub(super) struct Coarse {
     pub recording: Recording,
     items: Vec<Item>,
+    /// [`fingerprint`] of the samples.
+    pub data: u64,
     seed: u64,
     /// Poses for each step.
     count: usize,
@@ -28,6 +30,7 @@ impl Coarse {
     /// then learns the truth itself.
     pub fn new(
         model: &HostModel,
+        setup: &Setup,
         samples: &[&Sample],
         losses: &Losses,
         settings: &Settings,
@@ -41,6 +44,7 @@ impl Coarse {
         Ok(Some(Self {
             recording: Recording::new(model, variant, Streams::Skeleton).0,
             items: samples.iter().map(item).collect::<Result<_>>()?,
+            data: fingerprint(setup, samples)?,
             seed,
             count: samples.len().div_ceil(steps).min(EACH * batch),
         }))

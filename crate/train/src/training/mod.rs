@@ -199,12 +199,11 @@ impl Trainer {
     /// as many are drawn for each step as come to one of each, up to four times the batch.
     pub fn add_coarse(&mut self, setup: &Setup, samples: &[&Sample]) -> Result<()> {
         let Some(Worker { losses, .. }) = self.workers.first() else { return Ok(()) };
-        self.coarse = Coarse::new(&self.model, samples, losses, &self.settings, self.steps())?;
+        self.coarse = Coarse::new(&self.model, setup, samples, losses, &self.settings, self.steps())?;
         let Some(coarse) = &self.coarse else { return Ok(()) };
         for worker in &mut self.workers {
             worker.coarse = Some(coarse.recording.lane(&self.parameters.shared)?);
         }
-        self.data ^= fingerprint(setup, samples)?.rotate_left(1);
         Ok(())
     }
 

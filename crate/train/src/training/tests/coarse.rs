@@ -3,7 +3,6 @@
 
 use super::*;
 use crate::synthetic;
-use ctsn_core::model::Storage;
 
 /// A tube, poses to learn from, and others whose cloth hangs 50 mm lower.
 fn scene() -> (HostModel, Setup, Vec<Sample>, Vec<Sample>) {
@@ -75,21 +74,7 @@ fn the_same_coarse_poses_are_drawn_after_an_interruption_and_by_any_number_of_th
     assert_eq!(drawn(1).len(), 4, "eight poses, two steps an epoch");
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("checkpoint");
-    let train = |threads: usize, stop: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| {
-            let mut trainer = start();
-            (0..stop).for_each(|_| _ = trainer.round(&samples).unwrap());
-            trainer.save(&path).unwrap();
-            let mut resumed = start();
-            resumed.resume(&path).unwrap();
-            (stop..settings.epochs).for_each(|_| _ = resumed.round(&samples).unwrap());
-            resumed.model().to_bytes(Storage::F32)
-        })
-    };
-    let whole = train(1, settings.epochs);
-    assert!(whole == train(1, 2), "interrupted");
-    assert!(whole == train(3, 1), "by three threads");
+    assert_same_after_interruption(start, &samples, settings, &path);
     let mut other = Trainer::new(model.clone(), &setup, &samples, settings).unwrap();
     let refused = other.resume(&path).unwrap_err().to_string();
     assert!(refused.contains("another training"), "{refused}");

@@ -169,6 +169,31 @@ fn whole_network() {
     }
 }
 
+/// Trains as long as `settings` say, once in one go, once interrupted, once by three threads and interrupted: the same
+/// bytes. `start` makes the trainer anew; a checkpoint of it is left at `path`.
+fn assert_same_after_interruption(
+    start: impl Fn() -> Trainer + Sync,
+    samples: &[&Sample],
+    settings: Settings,
+    path: &std::path::Path,
+) {
+    let train = |threads: usize, stop: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            let mut trainer = start();
+            (0..stop).for_each(|_| _ = trainer.round(samples).unwrap());
+            trainer.save(path).unwrap();
+            let mut resumed = start();
+            resumed.resume(path).unwrap();
+            (stop..settings.epochs).for_each(|_| _ = resumed.round(samples).unwrap());
+            resumed.model().to_bytes(Storage::F32)
+        })
+    };
+    let whole = train(1, settings.epochs);
+    assert!(whole == train(1, 2), "interrupted");
+    assert!(whole == train(3, 1), "by three threads");
+}
+
 /// Trains for an epoch; the mean loss of the whole prediction, metres.
 fn fine(trainer: &mut Trainer) -> f32 {
     let losses = trainer.epoch(|_, _, _| {}).unwrap();

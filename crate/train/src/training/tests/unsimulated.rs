@@ -4,7 +4,6 @@ use super::*;
 use crate::body::body;
 use crate::loss::{Known, Losses, Scene};
 use crate::synthetic;
-use ctsn_core::model::Storage;
 use ctsn_core::network::skin;
 
 /// A trunk of two joints with two limbs of two, and cloth whose truth is inside the body, so that only the loss of
@@ -73,19 +72,5 @@ fn the_same_poses_are_drawn_after_an_interruption_and_by_any_number_of_threads()
     assert!(drawn(7) == drawn(7) && drawn(7) != drawn(8));
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("checkpoint");
-    let train = |threads: usize, stop: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| {
-            let mut trainer = start();
-            (0..stop).for_each(|_| _ = trainer.round(&samples).unwrap());
-            trainer.save(&path).unwrap();
-            let mut resumed = start();
-            resumed.resume(&path).unwrap();
-            (stop..settings.epochs).for_each(|_| _ = resumed.round(&samples).unwrap());
-            resumed.model().to_bytes(Storage::F32)
-        })
-    };
-    let whole = train(1, settings.epochs);
-    assert!(whole == train(1, 2), "interrupted");
-    assert!(whole == train(3, 1), "by three threads");
+    assert_same_after_interruption(start, &samples, settings, &path);
 }
