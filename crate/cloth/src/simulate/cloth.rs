@@ -32,7 +32,12 @@ const REPULSION: f64 = 1e7;
 
 /// Cloth of more vertices than this is fine: it travels coarse, and takes more steps with each factor. Smaller garments
 /// answer as they did before there was such a thing.
-const FINE: usize = 2500;
+pub const FINE: usize = 2500;
+
+/// Whether cloth of so many vertices is fine.
+pub fn is_fine(vertices: usize) -> bool {
+    vertices > FINE
+}
 
 impl Cloth {
     /// `warp`: direction of the warp per triangle. `shape` in 0..1 is the share of the rest mesh's own dihedral angles
@@ -54,7 +59,7 @@ impl Cloth {
 
     /// Whether it has so many vertices that it travels coarse.
     pub fn is_fine(&self) -> bool {
-        self.elastic.masses.len() > FINE
+        is_fine(self.elastic.masses.len())
     }
 
     /// Vertex groups that share an element: the cliques of the Hessian's pattern.

@@ -32,6 +32,7 @@ mod way;
 #[cfg(test)]
 mod tests;
 
+pub use cloth::{FINE, is_fine};
 pub use coarse::Embedding;
 pub use distance::{BodyDistance, felt};
 pub use elastic::{Elastic, Hinge, Membrane, Triangle};

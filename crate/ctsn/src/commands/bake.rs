@@ -63,7 +63,10 @@ const FEWEST: usize = 60;
 /// Mixed poses for each frame. Of a stranger's T-shirt 180 poses were simulated, and another's dances judged: with a
 /// third of them mixed E_dist was 17.5 mm, with two thirds, turned further, 12.6 mm (docs/decisions/poses.md).
 const MIXED: usize = 2;
-/// Coarse poses for each of those, of a garment that is fine: they take a sixth of the time.
+/// Frames for each mixed pose of a garment that is fine: there half of them are left out, and one that is kept takes
+/// four times as long as a frame (a dress of 2,996 vertices: 20 and 5 s of a core; coarse 1.8 s).
+const FRAMES_A_MIXED: usize = 2;
+/// Coarse poses for each frame of such a garment. Half of them are mixed poses.
 const COARSE: usize = 4;
 /// Poses by which the time of one is measured.
 const TIMED: usize = 6;
@@ -82,13 +85,16 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let frames: usize = character.clips.iter().map(|clip| clip.poses.len()).sum();
     let frames = options.poses.unwrap_or(frames).min(frames);
     ensure!(frames >= POSES, "wanted at least {POSES} poses to learn from, found {frames} in the clips and --poses");
-    let mixable = options.mixed == 0 && has_limbs(&character);
-    let mixed = if mixable { frames * MIXED } else { options.mixed };
-    let coarse = if options.coarse == 0 { (frames + mixed) * COARSE } else { options.coarse };
-
     let steps = Steps { character: &character, arguments, garment: &garment, budget, begun: Instant::now() };
     let first = work.join("first.safetensors");
-    let shown = steps.check()?;
+    let (shown, fine) = steps.check()?;
+    let mixable = options.mixed == 0 && has_limbs(&character);
+    let mixed = match (mixable, fine) {
+        (true, true) => frames / FRAMES_A_MIXED,
+        (true, false) => frames * MIXED,
+        (false, _) => options.mixed,
+    };
+    let coarse = if options.coarse == 0 && fine { frames * COARSE } else { options.coarse };
     if !first.exists() {
         let few = frames.div_ceil(FIRST).max(FEWEST).min(frames);
         let along = simulate::Options { poses: Some(few), mixed: 0, coarse: 0, noise_floor: 0, ..options.clone() };
@@ -147,8 +153,9 @@ impl Steps<'_> {
         }
     }
 
-    /// Says what is wrong with the garment and what of it was mended, before anything is begun; the same to be shown.
-    fn check(&self) -> Result<Markup> {
+    /// Says what is wrong with the garment and what of it was mended, before anything is begun; the same to be shown,
+    /// and whether the garment is fine.
+    fn check(&self) -> Result<(Markup, bool)> {
         let found = sketch(self.garment, self.character)?;
         let mut complete = Character { clips: Vec::new(), ..self.character.clone() };
         let hung = load(self.garment, &mut complete, self.arguments.options.resample).and_then(|fitted| {
@@ -161,8 +168,9 @@ impl Steps<'_> {
             write(&path, pages::check::page(names, self.character, &complete, &found, &hung)?.as_bytes())?;
         }
         let shown = pages::check::faults(self.character, &complete, &found, &hung)?;
-        hung.with_context(|| format!("{} (pictures in {})", self.garment.display(), path.display()))?;
-        Ok(shown)
+        let (fitted, _) =
+            hung.with_context(|| format!("{} (pictures in {})", self.garment.display(), path.display()))?;
+        Ok((shown, simulate::fine(&self.arguments.options, &fitted.garment)?))
     }
 
     /// Says how long it will take, from a few poses.

@@ -1,9 +1,9 @@
 //! `ctsn simulate`: the truth to learn from.
 
 use super::{bar, file_name, model, remaining};
-use anyhow::{Result, bail};
+use anyhow::{Result, bail, ensure};
 use ctsn_cloth::garment::{self, Fitted, Resample};
-use ctsn_cloth::simulate::{Material, Settings};
+use ctsn_cloth::simulate::{FINE, Material, Settings, is_fine};
 use ctsn_rig::gltf;
 use ctsn_rig::{Character, Garment, SkinWeights, SkinnedMesh};
 use ctsn_train::dataset::Dataset;
@@ -104,6 +104,7 @@ pub fn along(character: &Character, arguments: &Arguments, until: Option<Instant
     let material = Material::named(&options.material)?;
     let mut character = character.clone();
     let garment = fitted(&arguments.garment, &mut character, options.resample)?;
+    fine(options, &garment)?;
     let character = &character;
     let teacher = options.from.as_deref().map(model).transpose()?;
     let names = [file_name(&arguments.character), file_name(&arguments.garment)];
@@ -139,6 +140,14 @@ fn fitted(path: &Path, character: &mut Character, resample: Resample) -> Result<
     mended.iter().for_each(|mend| eprintln!("  {}: mended: {mend}", path.display()));
     warnings.iter().for_each(|warning| eprintln!("  {}: {warning}", path.display()));
     Ok(garment)
+}
+
+/// Whether the garment is one of which poses may be simulated coarsely.
+pub fn fine(options: &Options, garment: &Garment) -> Result<bool> {
+    let (vertices, coarse) = (garment.mesh.positions.len(), options.coarse);
+    let fine = is_fine(vertices);
+    ensure!(fine || coarse == 0, "--coarse {coarse}: wanted a garment of more than {FINE} vertices, found {vertices}");
+    Ok(fine)
 }
 
 /// The frames of a character's clips in a garment of cotton, for a training without simulated poses.
