@@ -7,6 +7,8 @@ struct Params {
     seeds: u32,
     steps: u32,
     gap: f32,
+    // How far above the body there is room.
+    reach: f32,
     depth: f32,
     steepest: f32,
     sliver: f32,
@@ -54,11 +56,11 @@ fn corner(vertex: u32, other: u32) -> u32 {
     return select(other, vertex, body[3u * other] >= params.away);
 }
 
-// The displacement to the gap, and the squared distance to the body around a place. (Parted in two functions, or with
+// The displacement out of reach, and the squared distance to the body around a place. (Parted in two functions, or with
 // the highest corner sought here instead of on the walk, a software adapter took 5 ms instead of 2.)
 fn push_from(point: vec3<f32>, place: Place) -> vec4<f32> {
     let vertex = place.vertex;
-    if (dot(point - position(vertex), normal(vertex)) - place.top > params.gap) {
+    if (dot(point - position(vertex), normal(vertex)) - place.top > params.reach) {
         return vec4(0.0, 0.0, 0.0, place.squared);
     }
     let a = position(vertex);
@@ -84,5 +86,5 @@ fn push_from(point: vec3<f32>, place: Place) -> vec4<f32> {
     let beside = least > params.gap * params.gap && abs(along_up) < params.steepest * sqrt(least);
     let found = best.x < 3.4e38 && a.x < params.away && length > params.folded && !beside && along_up >= -params.depth;
     let height = select(along_up, sqrt(least), along_up > 0.0);
-    return select(vec4(0.0, 0.0, 0.0, 3.4e38), vec4(up * max(params.gap - height, 0.0), least), found);
+    return select(vec4(0.0, 0.0, 0.0, 3.4e38), vec4(up * max(params.reach - height, 0.0), least), found);
 }

@@ -90,6 +90,7 @@ params! {
         seeds: u32,
         steps: u32,
         gap: f32,
+        reach: f32,
         depth: f32,
         steepest: f32,
         sliver: f32,
@@ -100,6 +101,8 @@ params! {
         elsewhere: f32,
         again: f32
     }
+    /// `Params` of diffuse.wgsl.
+    Diffuse { vertices: u32, own: f32, others: f32 }
     /// `Params` of features.wgsl.
     Features { mean: [f32; 3], edge_scale: f32, deviation: [f32; 3], vertices: u32 }
     /// `Params` of linear.wgsl and linear.row.wgsl.
@@ -107,7 +110,7 @@ params! {
     /// `Params` of normals.wgsl.
     Normals { vertices: u32 }
     /// `Params` of polish.wgsl.
-    Polish { vertices: u32, own: f32, others: f32, momentum: f32 }
+    Polish { vertices: u32, own: f32, others: f32, momentum: f32, most: f32 }
     /// `Params` of pull.wgsl.
     Pull { vertices: u32 }
     /// `Params` of ride.wgsl.
@@ -163,7 +166,9 @@ shaders! {
     /// Positions, offsets, corners -> normals.
     NORMALS: Normals, "normals" + [], [Read Read Read Write], [64, 1];
     /// Offsets, neighbours, share, pulls -> moves, positions.
-    POLISH: Polish, "polish" + [], [Read Read Read Read Write Write], [64, 1];
+    POLISH: Polish, "polish" + [], [Read Read Read Read Write Write Write], [64, 1];
+    /// Offsets, neighbours, pulls -> pulls.
+    DIFFUSE: Diffuse, "diffuse" + [], [Read Read Read Write], [64, 1];
     /// Offsets, neighbours, squares, positions -> pulls.
     PULL: Pull, "pull" + [], [Read Read Read Read Write], [64, 1];
     /// Corners, coordinates, positions, normals -> riders.

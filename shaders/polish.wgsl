@@ -6,6 +6,8 @@ struct Params {
     own: f32,
     others: f32,
     momentum: f32,
+    // What a vertex at its gap from the body lacks to where the body is no longer met.
+    most: f32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
@@ -18,8 +20,10 @@ struct Params {
 @group(0) @binding(4) var<storage, read> pulls: array<f32>;
 // How far the last step went, and then this one [n, 3].
 @group(0) @binding(5) var<storage, read_write> moves: array<f32>;
+// What each vertex lacks to where the body is no longer met, before the step, and then after it [n, 3].
+@group(0) @binding(6) var<storage, read_write> near: array<f32>;
 // [n, 3]
-@group(0) @binding(6) var<storage, read_write> positions: array<f32>;
+@group(0) @binding(7) var<storage, read_write> positions: array<f32>;
 
 fn pull(i: u32) -> vec3<f32> {
     return vec3(pulls[3u * i], pulls[3u * i + 1u], pulls[3u * i + 2u]);
@@ -39,7 +43,19 @@ fn polish(@builtin(global_invocation_id) id: vec3<u32>) {
     // What was there before the first step, which has no momentum, may be anything.
     let last = vec3(moves[3u * i], moves[3u * i + 1u], moves[3u * i + 2u]);
     let on = select(vec3(0.0), last * params.momentum, params.momentum > 0.0);
-    let by = (pull(i) * params.own + mean * params.others + on) * share[0];
+    var by = (pull(i) * params.own + mean * params.others + on) * share[0];
+    let lacks = vec3(near[3u * i], near[3u * i + 1u], near[3u * i + 2u]);
+    let lack = length(lacks);
+    if (lack > 0.0) {
+        let up = lacks / lack;
+        let after = lack - dot(by, up);
+        let too_near = max(after - params.most, 0.0);
+        by += up * too_near;
+        let left = up * max(after - too_near, 0.0);
+        near[3u * i] = left.x;
+        near[3u * i + 1u] = left.y;
+        near[3u * i + 2u] = left.z;
+    }
     moves[3u * i] = by.x;
     moves[3u * i + 1u] = by.y;
     moves[3u * i + 2u] = by.z;

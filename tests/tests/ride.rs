@@ -40,12 +40,14 @@ fn two_layers_with_pockets_are_the_same_on_both_devices() {
             assert!(off <= TOLERANCE, "{streams:?}: {off:e}");
             let drawn = block_on(on_gpu.read_drawn()).expect("a prediction");
             assert_eq!(drawn.positions.len(), 3 * surface.vertex.len());
-            for (found, wanted) in
-                [(&drawn.positions, on_cpu.drawn_positions()), (&drawn.normals, on_cpu.drawn_normals())]
-            {
-                // A normal of a triangle of a few millimetres turns by as much as its corners move.
+            // Where cloth is crumpled, the normals around a vertex nearly cancel out, and what is left of them turns.
+            let parts = [
+                (&drawn.positions, on_cpu.drawn_positions(), TOLERANCE),
+                (&drawn.normals, on_cpu.drawn_normals(), 100.0 * TOLERANCE),
+            ];
+            for (found, wanted, tolerance) in parts {
                 let off = largest(found, wanted);
-                assert!(off <= 20.0 * TOLERANCE, "{streams:?}: {off:e}");
+                assert!(off <= tolerance, "{streams:?}: {off:e}");
             }
         }
     }

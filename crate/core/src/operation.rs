@@ -152,7 +152,20 @@ operations! { $
         pulls: W,
     }
 
-    /// One step in which the cloth follows its edges' pulls, each vertex with its neighbours. network.md §5.
+    /// One round in which every pull is shared with the neighbours. network.md §5.
+    Diffuse<R, W, I> {
+        /// Where the neighbours of each vertex start [n + 1].
+        offsets: I,
+        /// Neighbours [edges].
+        neighbours: I,
+        /// [n, 3].
+        pulls: R,
+        /// [n, 3].
+        diffused: W,
+    }
+
+    /// One step in which the cloth follows its edges' pulls, each vertex with its neighbours, and stays out of the
+    /// body. network.md §5.
     Polish<R, W, I> {
         /// Where the neighbours of each vertex start [n + 1].
         offsets: I,
@@ -166,6 +179,8 @@ operations! { $
         pulls: R,
         /// How far the last step went, and then this one [n, 3].
         moves: W,
+        /// What each vertex lacks to `REACH` above the body before the step, and then after it [n, 3].
+        near: W,
         /// x [n, 3]; read and moved.
         positions: W,
     }
@@ -220,8 +235,10 @@ operations! { $
         exposed: W,
     }
 
-    /// How far each cloth vertex must move to have its gap to the body; zero where there is room.
+    /// How far each cloth vertex must move to lie so far above the body; zero where there is room.
     Collide<R, W, I> {
+        /// How far, metres.
+        reach: f32,
         /// The body as [`Bury`] leaves it [b, 3].
         exposed: R,
         /// Its unit normals [b, 3].
@@ -316,8 +333,10 @@ impl Operation<usize, usize, usize> {
             }
             // An edge: difference, square, pull, sum.
             Self::Pull(it) => 18 * it.neighbours + it.positions,
-            // A sum over the neighbours; a vertex: two shares, momentum, the move.
-            Self::Polish(it) => 3 * it.neighbours + 6 * it.positions,
+            // A sum over the neighbours, two shares.
+            Self::Diffuse(it) => 3 * it.neighbours + 3 * it.pulls,
+            // The same; a vertex: momentum, the move, and how near it is to the body.
+            Self::Polish(it) => 3 * it.neighbours + 6 * it.positions + 20 * (it.positions / 3),
             Self::Normals(it) => 18 * it.triangles + 3 * it.positions,
             // Two sums of three vectors, the length of one, and the offset.
             Self::Ride(it) => 15 * it.riders,

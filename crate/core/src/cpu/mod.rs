@@ -12,6 +12,7 @@ pub mod network {
     pub mod attend;
     pub mod blend;
     pub mod body_frame;
+    pub mod diffuse;
     pub mod exp;
     pub mod features;
     pub mod gate;

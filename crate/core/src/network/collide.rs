@@ -1,6 +1,7 @@
 //! Penetration repair: the prediction is moved out of the posed body. Paper, § Penetration Handling.
 
 use super::{Activations, DeviceModel, skin};
+use crate::cpu::repair::closest::GAP;
 use crate::device::Device;
 use crate::model::{Body, Cut};
 use crate::operation::{Bury, Collide, Normals, Settle, Slide, Space, Spread};
@@ -38,11 +39,16 @@ impl<B> Collision<B> {
     }
 }
 
-/// Moves the predicted positions, which have been polished or not; nothing happens where the model has no body.
-pub fn collide<D: Device>(device: &mut D, model: &DeviceModel<D>, polished: bool, a: &mut Activations<D::Buffer>) {
+/// Puts the body, which cloth is kept out of, in its pose; nothing happens where the model has none.
+pub(crate) fn stand<D: Device>(device: &mut D, model: &DeviceModel<D>, a: &mut Activations<D::Buffer>) {
     let (Some(body), Some(c)) = (&model.body, &mut a.collision) else { return };
     expose(device, body, &a.body_frame, Space::World, [&mut c.body, &mut c.normals, &mut c.exposed]);
-    push(device, body, [&c.exposed, &c.normals, &a.positions], &mut c.push);
+}
+
+/// Moves the predicted positions, which have been polished or not, out of the body that [stands](stand) there.
+pub fn collide<D: Device>(device: &mut D, model: &DeviceModel<D>, polished: bool, a: &mut Activations<D::Buffer>) {
+    let (Some(body), Some(c)) = (&model.body, &mut a.collision) else { return };
+    push(device, body, GAP, [&c.exposed, &c.normals, &a.positions], &mut c.push);
     let Graph { offsets, neighbours } = &model.graph;
     let [first, second] = &mut c.displacement;
     device.run(Spread { offsets, neighbours, push: &c.push, before: &c.push, after: &mut *first }.into());
@@ -82,13 +88,15 @@ pub fn expose<D: Device>(
     device.run(Bury { posed: &*posed, normals: &*normals, areas: &body.areas, exposed }.into());
 }
 
-/// What each cloth vertex lacks to its gap [n, 3]: exposed positions and normals of the body [b, 3], cloth [n, 3].
+/// What each cloth vertex lacks to `reach` above the body, metres [n, 3]: exposed positions and normals of the body
+/// [b, 3], cloth [n, 3].
 pub fn push<D: Device>(
     device: &mut D,
     body: &Body<D::Buffer, D::Indices>,
+    reach: f32,
     [exposed, normals, positions]: [&D::Buffer; 3],
     push: &mut D::Buffer,
 ) {
     let (offsets, corners, seeds) = (&body.fans.offsets, &body.fans.corners, &body.seeds);
-    device.run(Collide { exposed, normals, offsets, corners, seeds, positions, push }.into());
+    device.run(Collide { reach, exposed, normals, offsets, corners, seeds, positions, push }.into());
 }

@@ -8,6 +8,7 @@ mod polish;
 use crate::device::Device;
 use crate::model::{HostModel, Model, Skinning};
 use crate::operation::{self, BodyFrame, Normals, Space};
+pub(crate) use collide::stand;
 pub use collide::{Collision, collide, expose, push};
 pub(crate) use embedding::skeleton;
 pub use graph::graph_layer;
@@ -89,8 +90,18 @@ pub struct Drawn<B> {
 pub struct Polishing<B> {
     /// Pulls of the edges [n, 3].
     pub pulls: B,
+    /// The same, shared with the neighbours [n, 3].
+    pub diffused: B,
     /// How far the last step went [n, 3].
     pub moves: B,
+    /// What each vertex lacks to `REACH` above the body; zero, too, where the model has none [n, 3].
+    pub near: B,
+}
+
+impl<B> Polishing<B> {
+    fn new(mut room: impl FnMut() -> B) -> Self {
+        Self { pulls: room(), diffused: room(), moves: room(), near: room() }
+    }
 }
 
 /// What a graph layer computes on its way.
@@ -136,10 +147,7 @@ impl<B> Activations<B> {
             coarse: buffer("skeleton", n * 3),
             template: buffer("template", n * 3),
             positions: buffer("positions", n * 3),
-            polish: model
-                .cut
-                .as_ref()
-                .map(|_| Polishing { pulls: buffer("polish", n * 3), moves: buffer("polish", n * 3) }),
+            polish: model.cut.as_ref().map(|_| Polishing::new(|| buffer("polish", n * 3))),
             collision: model.body.as_ref().map(|body| Collision::new(body.vertices, n, &mut buffer)),
             normals: buffer("normals", n * 3),
             riders: model.ride.as_ref().map(|ride| Drawn {
@@ -170,6 +178,9 @@ impl<B> Activations<B> {
 pub fn predict<D: Device>(device: &mut D, model: &DeviceModel<D>, streams: Streams, a: &mut Activations<D::Buffer>) {
     pose(device, model, a);
     forward(device, model, streams, Space::World, a);
+    if streams != Streams::None {
+        stand(device, model, a);
+    }
     if streams == Streams::Both {
         polish(device, model, a);
     }

@@ -1,18 +1,23 @@
 //! Predicted positions -> positions whose edges have about the lengths that the garment was cut to. network.md §5.
 
-use super::{Activations, DeviceModel, Polishing};
+use super::{Activations, DeviceModel, Polishing, push};
+use crate::cpu::network::polish::REACH;
 use crate::device::Device;
-use crate::operation::{Polish, Pull};
+use crate::operation::{Diffuse, Polish, Pull};
 use crate::topology::Graph;
 
-/// Nothing happens where the model does not know how the garment was cut.
+/// Nothing happens where the model does not know how the garment was cut. The body stands in its pose already.
 pub(crate) fn polish<D: Device>(device: &mut D, model: &DeviceModel<D>, a: &mut Activations<D::Buffer>) {
-    let (Some(cut), Some(Polishing { pulls, moves })) = (&model.cut, &mut a.polish) else { return };
+    let (Some(cut), Some(Polishing { pulls, diffused, moves, near })) = (&model.cut, &mut a.polish) else { return };
+    if let (Some(body), Some(c)) = (&model.body, &a.collision) {
+        push(device, body, REACH, [&c.exposed, &c.normals, &a.positions], near);
+    }
     let Graph { offsets, neighbours } = &model.graph;
     let (squares, share, positions) = (&cut.squares, &a.mesh_share, &mut a.positions);
     for step in 0..cut.steps {
         device.run(Pull { offsets, neighbours, squares, positions: &*positions, pulls: &mut *pulls }.into());
-        let (pulls, moves, positions) = (&*pulls, &mut *moves, &mut *positions);
-        device.run(Polish { offsets, neighbours, share, first: step == 0, pulls, moves, positions }.into());
+        device.run(Diffuse { offsets, neighbours, pulls: &*pulls, diffused: &mut *diffused }.into());
+        let (pulls, moves, near, positions) = (&*diffused, &mut *moves, &mut *near, &mut *positions);
+        device.run(Polish { offsets, neighbours, share, first: step == 0, pulls, moves, near, positions }.into());
     }
 }

@@ -5,7 +5,7 @@ mod folds;
 use crate::confidence::Confidence;
 use crate::cpu::{Cpu, Level, Threads};
 use crate::model::{HostModel, Sizes, Surface};
-use crate::network::{Activations, Streams, finish, forward, mesh, polish, pose, repair, skeleton, skin};
+use crate::network::{Activations, Streams, finish, forward, mesh, polish, pose, repair, skeleton, skin, stand};
 use crate::operation::Space;
 use crate::pose::{Rig, Transform};
 use crate::{Error, Result};
@@ -155,6 +155,9 @@ impl Predictor {
     /// is checked, so that NaN never leaves.
     fn end(&mut self, streams: Streams, shares: Shares) -> Result<()> {
         let (device, model, a) = (&mut self.device, &*self.model, &mut self.activations);
+        if streams != Streams::None {
+            stand(device, model, a);
+        }
         if streams == Streams::Both {
             polish(device, model, a);
         }

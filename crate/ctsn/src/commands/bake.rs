@@ -88,13 +88,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let steps = Steps { character: &character, arguments, garment: &garment, budget, begun: Instant::now() };
     let first = work.join("first.safetensors");
     let (shown, fine) = steps.check()?;
-    let mixable = options.mixed == 0 && has_limbs(&character);
-    let mixed = match (mixable, fine) {
-        (true, true) => frames / FRAMES_A_MIXED,
-        (true, false) => frames * MIXED,
-        (false, _) => options.mixed,
-    };
-    let coarse = if options.coarse == 0 && fine { frames * COARSE } else { options.coarse };
+    let [mixed, coarse] = beside(frames, options, &character, fine);
     if !first.exists() {
         let few = frames.div_ceil(FIRST).max(FEWEST).min(frames);
         let along = simulate::Options { poses: Some(few), mixed: 0, coarse: 0, noise_floor: 0, ..options.clone() };
@@ -131,6 +125,16 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     })?;
     println!("{}: pictures, what was mended, what to do better, and how to put it on a page", page.display());
     Ok(())
+}
+
+/// How many mixed and coarse poses are simulated beside so many frames, where nothing else is asked for.
+fn beside(frames: usize, options: &simulate::Options, character: &Character, fine: bool) -> [usize; 2] {
+    let mixed = match (options.mixed == 0 && has_limbs(character), fine) {
+        (true, true) => frames / FRAMES_A_MIXED,
+        (true, false) => frames * MIXED,
+        (false, _) => options.mixed,
+    };
+    [mixed, if options.coarse == 0 && fine { frames * COARSE } else { options.coarse }]
 }
 
 /// What all steps share.

@@ -45,6 +45,9 @@ pub fn before(
         (garment)
         h2 { "The poses it was simulated in" }
         p { (report.kept) " frames and " (report.mixed) " mixed poses were kept, " (report.left_out.len()) " left out." }
+        @if report.coarse > 0 {
+            p { (report.coarse) " more were simulated coarsely, for the smooth part of the cloth." }
+        }
         (picture(&sheet(folder, dataset, character, Poses::Kept)?, "poses that were kept")?)
         @if !rows.is_empty() {
             h3 { "Left out" }

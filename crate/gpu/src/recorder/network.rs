@@ -3,8 +3,9 @@
 use super::{Id, IndexId, Record, Recorder};
 use crate::pack::{self, whole};
 use ctsn_core::cpu::network::{polish, ride};
+use ctsn_core::cpu::repair::closest::GAP;
 use ctsn_core::operation::{
-    Activation, Attend, Blend, BodyFrame, Features, Linear, Normals, Polish, Pull, Ride, Skin, Space, Surface,
+    Activation, Attend, Blend, BodyFrame, Diffuse, Features, Linear, Normals, Polish, Pull, Ride, Skin, Space, Surface,
 };
 use ctsn_core::pose::Frame;
 use ctsn_shaders as shaders;
@@ -161,9 +162,24 @@ impl Record for Pull<Id, Id, IndexId> {
     }
 }
 
+impl Record for Diffuse<Id, Id, IndexId> {
+    fn record(self, recorder: &mut Recorder) {
+        let Self { offsets, neighbours, pulls, diffused } = self;
+        let n = recorder.length(pulls) / 3;
+        let operands = [
+            recorder.indexed(offsets),
+            recorder.indexed(neighbours),
+            recorder.rows(pulls, 3, 3),
+            recorder.rows(diffused, 3, 3),
+        ];
+        let params = shaders::Diffuse { vertices: n as u32, own: polish::OWN, others: 1.0 - polish::OWN };
+        recorder.dispatch(&shaders::DIFFUSE, params, &operands, [n, 1], diffused);
+    }
+}
+
 impl Record for Polish<Id, Id, IndexId> {
     fn record(self, recorder: &mut Recorder) {
-        let Self { offsets, neighbours, share, first, pulls, moves, positions } = self;
+        let Self { offsets, neighbours, share, first, pulls, moves, near, positions } = self;
         let n = recorder.length(positions) / 3;
         let operands = [
             recorder.indexed(offsets),
@@ -171,11 +187,12 @@ impl Record for Polish<Id, Id, IndexId> {
             recorder.rows(share, 1, 4),
             recorder.rows(pulls, 3, 3),
             recorder.rows(moves, 3, 3),
+            recorder.rows(near, 3, 3),
             recorder.rows(positions, 3, 3),
         ];
         let (own, others) = (polish::RATE * polish::OWN, polish::RATE * (1.0 - polish::OWN));
         let momentum = if first { 0.0 } else { polish::MOMENTUM };
-        let params = shaders::Polish { vertices: n as u32, own, others, momentum };
+        let params = shaders::Polish { vertices: n as u32, own, others, momentum, most: polish::REACH - GAP };
         recorder.dispatch(&shaders::POLISH, params, &operands, [n, 1], positions);
     }
 }

@@ -32,8 +32,9 @@ impl Record for Bury<Id, Id> {
 
 impl Record for Collide<Id, Id, IndexId> {
     fn record(self, recorder: &mut Recorder) {
-        let Self { exposed, normals, offsets, corners, seeds, positions, push } = self;
-        let (operands, params) = search(recorder, [exposed, normals, positions, push], [offsets, corners, seeds]);
+        let Self { reach, exposed, normals, offsets, corners, seeds, positions, push } = self;
+        let (operands, params) =
+            search(recorder, reach, [exposed, normals, positions, push], [offsets, corners, seeds]);
         let n = params.vertices as usize;
         recorder.dispatch(&shaders::COLLIDE, params, &operands, [n, 1], exposed);
     }
@@ -83,7 +84,7 @@ impl Record for Settle<Id, Id, IndexId> {
     fn record(self, recorder: &mut Recorder) {
         let Self { exposed, normals, offsets, corners, seeds, displacement, positions } = self;
         let buffers = [exposed, normals, displacement, positions];
-        let (operands, params) = search(recorder, buffers, [offsets, corners, seeds]);
+        let (operands, params) = search(recorder, closest::GAP, buffers, [offsets, corners, seeds]);
         let n = params.vertices as usize;
         recorder.dispatch(&shaders::SETTLE, params, &operands, [n, 1], exposed);
     }
@@ -93,6 +94,7 @@ impl Record for Settle<Id, Id, IndexId> {
 /// that are written.
 fn search(
     recorder: &mut Recorder,
+    reach: f32,
     [exposed, normals, cloth, output]: [Id; 4],
     [offsets, corners, seeds]: [IndexId; 3],
 ) -> ([Operand; 7], shaders::Collide) {
@@ -112,6 +114,7 @@ fn search(
         seeds: width as u32,
         steps: closest::STEPS as u32,
         gap: closest::GAP,
+        reach,
         depth: closest::DEPTH,
         steepest: closest::STEEPEST,
         sliver: eight::SLIVER,

@@ -5,6 +5,7 @@
 
 use super::{Loss, Prediction, Term};
 use ctsn_core::cpu::Cpu;
+use ctsn_core::cpu::repair::closest::GAP;
 use ctsn_core::model::{Body, HostModel};
 use ctsn_core::network::{expose, push};
 use ctsn_core::operation::Space;
@@ -55,7 +56,7 @@ impl Penetration {
     pub fn lacks(&mut self, predicted: &[f32]) -> &[f32] {
         let Self { body, cpu, normals, exposed, cloth, push: lacks, .. } = self;
         cloth.copy_from_slice(predicted);
-        push(cpu, body, [exposed, normals, cloth], lacks);
+        push(cpu, body, GAP, [exposed, normals, cloth], lacks);
         lacks
     }
 }

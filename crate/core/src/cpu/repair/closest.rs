@@ -32,12 +32,15 @@ pub struct Posed<'a> {
     pub fans: &'a [[u32; 2]],
     /// The same neighbours, eight at once.
     pub rings: &'a Rings,
+    /// How far above it a point has room, metres.
+    pub reach: f32,
 }
 
 /// A body vertex and the squared distance to it.
 pub type Place = (u32, f32);
 
-/// What a search found: squared distance to the body, infinite where there is none, and the displacement to its gap.
+/// What a search found: squared distance to the body, infinite where there is none, and the displacement that makes
+/// room.
 pub type Found = (f32, Vec3);
 
 /// No body.
@@ -50,19 +53,19 @@ pub fn nearer(a: Found, b: Found) -> Found {
 }
 
 impl<'a> Posed<'a> {
-    /// The body at these positions and unit normals [b, 3], with the fans of its triangles; `rings` are posed with it.
+    /// The body at these positions and unit normals [b, 3], with the fans of its triangles, out of whose reach cloth is
+    /// wanted; `rings` are posed with it.
     #[inline(always)]
     pub fn new<S: Simd>(
         simd: S,
-        positions: &'a [f32],
-        normals: &'a [f32],
-        offsets: &'a [u32],
-        corners: &'a [u32],
+        reach: f32,
+        [positions, normals]: [&'a [f32]; 2],
+        [offsets, corners]: [&'a [u32]; 2],
         rings: &'a mut Rings,
     ) -> Self {
         rings.pose(simd, positions, normals, offsets, corners);
         let (positions, normals, fans) = (positions.as_chunks().0, normals.as_chunks().0, corners.as_chunks().0);
-        Self { positions, normals, offsets, fans, rings }
+        Self { positions, normals, offsets, fans, rings, reach }
     }
 
     #[inline(always)]
@@ -141,7 +144,7 @@ impl<'a> Posed<'a> {
     #[inline(always)]
     pub fn around<S: Simd>(&self, simd: S, point: Vec3, (vertex, squared): Place) -> Found {
         let (at, up) = (self.position(vertex), self.normal(vertex));
-        let room = (point - at).dot(up) - GAP;
+        let room = (point - at).dot(up) - self.reach;
         if room > self.rings.top(vertex) { (squared, Vec3::ZERO) } else { self.foot(simd, point, vertex) }
     }
 
@@ -182,7 +185,7 @@ impl<'a> Posed<'a> {
         // Outside, the height is the distance itself: cloth with room must not move, whatever the normals at a ridge
         // are.
         let height = if height > 0.0 { distance } else { height };
-        (distance * distance, normal * (GAP - height).max(0.0))
+        (distance * distance, normal * (self.reach - height).max(0.0))
     }
 
     /// The closest point of the triangles around a vertex, and the interpolated unit normal there.

@@ -3,6 +3,8 @@
 //! the *seeds*, kept with the model for each cloth vertex. So the result depends on the pose alone, and cloth does not
 //! find parts of the body that it never came near. Twin: shaders/collide.wgsl.
 
+#[cfg(feature = "suite")]
+use super::closest::GAP;
 use super::closest::{NOTHING, Posed, nearer};
 use crate::cpu::threads::of;
 use crate::cpu::{Cpu, Kernel};
@@ -24,9 +26,9 @@ pub const ELSEWHERE: f32 = 0.1;
 
 impl Kernel for Collide<&[f32], &mut [f32], &[u32]> {
     fn run(self, cpu: &mut Cpu) {
-        let Self { exposed, normals, offsets, corners, seeds, positions, push } = self;
+        let Self { reach, exposed, normals, offsets, corners, seeds, positions, push } = self;
         let (level, rings) = (cpu.level, &mut cpu.rings);
-        let body = &dispatch!(level, simd => Posed::new(simd, exposed, normals, offsets, corners, rings));
+        let body = &dispatch!(level, simd => Posed::new(simd, reach, [exposed, normals], [offsets, corners], rings));
         let n = positions.len() / 3;
         let width = seeds.len() / n.max(1);
         cpu.threads.share(n, [push], &mut cpu.scratch, |rows, [push], _| {
@@ -46,9 +48,9 @@ fn kernel<S: Simd>(simd: S, positions: &[f32], body: &Posed, seeds: &[u32], push
     }
 }
 
-/// The displacement that brings `point` to the gap. Where cloth comes near another part of the body than its own, as in
-/// an armpit, or hangs free, the nearer part decides. (When the part it was deeper inside of decided, as for a union of
-/// parts, a search that ended on the far side of a limb threw cloth 47 mm off, and a skirt trembled by 11 % more, not
+/// The displacement that brings `point` out of reach. Where cloth comes near another part of the body than its own, as
+/// in an armpit, or hangs free, the nearer part decides. (When the part it was deeper inside of decided, as for a union
+/// of parts, a search that ended on the far side of a limb threw cloth 47 mm off, and a skirt trembled by 11 % more, not
 /// 1.)
 #[inline(always)]
 fn displacement<S: Simd>(simd: S, point: Vec3, body: &Posed, seeds: &[u32], landmarks: &Landmarks) -> Vec3 {
@@ -128,14 +130,14 @@ impl crate::suite::Suite for Collide<Vec<f32>, Vec<f32>, Vec<u32>> {
         let scene = suite::Scene::new(rng, 300);
         let suite::Scene { exposed, normals, offsets, corners, seeds, positions, .. } = scene;
         let push = vec![0.5; positions.len()];
-        let whole = Self { exposed, normals, offsets, corners, seeds, positions, push };
+        let whole = Self { reach: GAP, exposed, normals, offsets, corners, seeds, positions, push };
         // No triangles: nothing to keep out of.
         let bare = Self { offsets: vec![0; whole.offsets.len()], corners: Vec::new(), ..whole.clone() };
-        vec![whole, bare]
+        vec![Self { reach: 0.01, ..whole.clone() }, whole, bare]
     }
 
     fn truth(&self) -> Vec<Option<Vec<f64>>> {
-        let body = suite::Wide::new(&self.exposed, &self.normals, &self.offsets, &self.corners);
+        let body = suite::Wide::new(self.reach, [&self.exposed, &self.normals], [&self.offsets, &self.corners]);
         let points = crate::suite::points(&self.positions);
         let push = |point: &glam::DVec3| {
             body.foot(*point, body.nearest(*point)).map_or(glam::DVec3::ZERO, |found| found.1).to_array()
@@ -185,6 +187,7 @@ pub(super) mod suite {
 
     /// The posed body in f64.
     pub struct Wide<'a> {
+        reach: f64,
         positions: Vec<DVec3>,
         normals: Vec<DVec3>,
         offsets: &'a [u32],
@@ -192,8 +195,8 @@ pub(super) mod suite {
     }
 
     impl<'a> Wide<'a> {
-        pub fn new(positions: &[f32], normals: &[f32], offsets: &'a [u32], corners: &'a [u32]) -> Self {
-            Self { positions: points(positions), normals: points(normals), offsets, corners }
+        pub fn new(reach: f32, [positions, normals]: [&[f32]; 2], [offsets, corners]: [&'a [u32]; 2]) -> Self {
+            Self { reach: f64::from(reach), positions: points(positions), normals: points(normals), offsets, corners }
         }
 
         /// The nearest of all vertices.
@@ -207,8 +210,8 @@ pub(super) mod suite {
             &self.corners.as_chunks().0[self.offsets[vertex] as usize..self.offsets[vertex + 1] as usize]
         }
 
-        /// The closest point of the triangles around a vertex: the distance to it, and what brings `point` to the gap
-        /// above it.
+        /// The closest point of the triangles around a vertex: the distance to it, and what brings `point` out of
+        /// its reach.
         pub fn foot(&self, point: DVec3, vertex: usize) -> Option<(f64, DVec3)> {
             let a = self.positions[vertex];
             let spots = self.around(vertex).iter().map(|others| {
@@ -224,7 +227,7 @@ pub(super) mod suite {
             let beside = away > f64::from(GAP) && height.abs() < f64::from(STEEPEST) * away;
             let told = steep.length() > f64::from(FOLDED) && !beside && height >= -f64::from(DEPTH);
             let height = if height > 0.0 { away } else { height };
-            told.then(|| (away, normal * (f64::from(GAP) - height).max(0.0)))
+            told.then(|| (away, normal * (self.reach - height).max(0.0)))
         }
     }
 

@@ -2,7 +2,7 @@
 //! its neighbours, a vertex may have come into another part, or to a place that the first look missed. Twin:
 //! shaders/settle.wgsl.
 
-use super::closest::{NOTHING, Posed, nearer};
+use super::closest::{GAP, NOTHING, Posed, nearer};
 use super::collide::{is_elsewhere, parted};
 use crate::cpu::{Cpu, Kernel};
 use crate::operation::Settle;
@@ -21,7 +21,7 @@ impl Kernel for Settle<&[f32], &mut [f32], &[u32]> {
         let Self { exposed, normals, offsets, corners, seeds, displacement, positions } = self;
         let rings = &mut cpu.rings;
         dispatch!(cpu.level, simd => {
-            let body = Posed::new(simd, exposed, normals, offsets, corners, rings);
+            let body = Posed::new(simd, GAP, [exposed, normals], [offsets, corners], rings);
             kernel(simd, displacement, &body, seeds, positions);
         });
     }
@@ -71,7 +71,8 @@ impl crate::suite::Suite for Settle<Vec<f32>, Vec<f32>, Vec<u32>> {
     }
 
     fn truth(&self) -> Vec<Option<Vec<f64>>> {
-        let body = super::collide::suite::Wide::new(&self.exposed, &self.normals, &self.offsets, &self.corners);
+        let body =
+            super::collide::suite::Wide::new(GAP, [&self.exposed, &self.normals], [&self.offsets, &self.corners]);
         let look = |point: glam::DVec3| {
             let vertex = body.nearest(point);
             let beside = body.around(vertex).iter().filter_map(|others| body.foot(point, others[0] as usize));

@@ -1,14 +1,14 @@
-//! The polish, all its steps at once: `x_(k+1) = x_k + w S p(x_k) + μ_k (x_k - x_(k-1))`, μ_0 = 0, where
-//! `S = a 1 + (1 - a) mean_j` shares with the neighbours, `p = mean_j h(x_j - x_i)`, and
+//! The polish, all its steps at once, without a body: `x_(k+1) = x_k + w S² p(x_k) + μ_k (x_k - x_(k-1))`, μ_0 = 0,
+//! where `S = a 1 + (1 - a) mean_j` shares with the neighbours, `p = mean_j h(x_j - x_i)`, and
 //! `h(d) = d (½ - l̄² / (d² + l̄²))` has the derivative `H = (½ - l̄² q) 1 + 2 l̄² q² d dᵀ`, `q = 1 / (d² + l̄²)`.
 //!
-//! Backwards, with λ_k the gradient towards x_k: `λ_k = (1 + μ_k) λ_(k+1) - μ_(k+1) λ_(k+2) + w Jᵀ Sᵀ λ_(k+1)`,
+//! Backwards, with λ_k the gradient towards x_k: `λ_k = (1 + μ_k) λ_(k+1) - μ_(k+1) λ_(k+2) + w Jᵀ Sᵀ² λ_(k+1)`,
 //! where `(Jᵀ λ)_i = Σ_j H_ij (λ_j / degree_j - λ_i / degree_i)`.
 
 use super::super::tape::{Id, IndexId, Shared, Step, Tape};
 use ctsn_core::cpu::Cpu;
 use ctsn_core::cpu::network::polish::{MOMENTUM, OWN, RATE};
-use ctsn_core::operation::{Polish, Pull};
+use ctsn_core::operation::{Diffuse, Polish, Pull};
 use ctsn_core::topology::Graph;
 use glam::Vec3;
 
@@ -51,14 +51,15 @@ impl Tape {
 /// from [n, 3] -> what each step starts from, [steps, n, 3], and the last one's result [n, 3].
 pub fn forward(cpu: &mut Cpu, cut: &Cut, from: &[f32], trail: &mut [f32], polished: &mut [f32]) {
     let Cut { graph: Graph { offsets, neighbours }, squares } = *cut;
-    let (mut pulls, mut moves) = (vec![0.0; from.len()], vec![0.0; from.len()]);
+    let [mut pulls, mut diffused, mut moves, mut near] = [0; 4].map(|_| vec![0.0; from.len()]);
     polished.copy_from_slice(from);
     for (k, start) in trail.chunks_exact_mut(from.len()).enumerate() {
         start.copy_from_slice(polished);
         cpu.compute(Pull { offsets, neighbours, squares, positions: &*start, pulls: &mut pulls[..] });
-        let (share, pulls, moves) = (&[1.0][..], &pulls[..], &mut moves[..]);
-        let positions = &mut *polished;
-        cpu.compute(Polish { offsets, neighbours, share, first: k == 0, pulls, moves, positions });
+        cpu.compute(Diffuse { offsets, neighbours, pulls: &pulls[..], diffused: &mut diffused[..] });
+        let (share, pulls, moves) = (&[1.0][..], &diffused[..], &mut moves[..]);
+        let (near, positions) = (&mut near[..], &mut *polished);
+        cpu.compute(Polish { offsets, neighbours, share, first: k == 0, pulls, moves, near, positions });
     }
 }
 
@@ -67,16 +68,21 @@ pub fn backward(cut: &Cut, trail: &[f32], g: &[f32], dfrom: &mut [f32]) {
     let g = g.as_chunks::<3>().0;
     let mut after: Vec<Vec3> = vec![Vec3::ZERO; g.len()];
     let mut current: Vec<Vec3> = g.iter().map(|g| Vec3::from_array(*g)).collect();
-    let (mut mean, mut shared) = (after.clone(), after.clone());
+    let (mut once, mut twice) = (after.clone(), after.clone());
     let degree = |i: usize| cut.graph.of(i).len().max(1) as f32;
+    // Sᵀ
+    let share = |from: &[Vec3], to: &mut [Vec3]| {
+        for (i, to) in to.iter_mut().enumerate() {
+            let others: Vec3 = cut.graph.of(i).iter().map(|j| from[*j as usize] / degree(*j as usize)).sum();
+            *to = from[i] * OWN + others * (1.0 - OWN);
+        }
+    };
     let mut momentum = 0.0;
     for (k, x) in trail.chunks_exact(3 * g.len()).enumerate().rev() {
         let x = x.as_chunks::<3>().0;
-        mean.iter_mut().zip(&current).enumerate().for_each(|(i, (mean, by))| *mean = by / degree(i));
-        for (i, shared) in shared.iter_mut().enumerate() {
-            let others: Vec3 = cut.graph.of(i).iter().map(|j| mean[*j as usize]).sum();
-            *shared = (current[i] * OWN + others * (1.0 - OWN)) * (RATE / degree(i));
-        }
+        share(&current, &mut once);
+        share(&once, &mut twice);
+        twice.iter_mut().enumerate().for_each(|(i, by)| *by *= RATE / degree(i));
         let here = if k > 0 { MOMENTUM } else { 0.0 };
         let mut squares = cut.squares.iter();
         for (i, after) in after.iter_mut().enumerate() {
@@ -84,7 +90,7 @@ pub fn backward(cut: &Cut, trail: &[f32], g: &[f32], dfrom: &mut [f32]) {
             let mut sum = current[i] * (1.0 + here) - *after * momentum;
             for (j, square) in cut.graph.of(i).iter().zip(&mut squares) {
                 let along = Vec3::from_array(x[*j as usize]) - at;
-                let by = shared[*j as usize] - shared[i];
+                let by = twice[*j as usize] - twice[i];
                 let q = 1.0 / (along.length_squared() + square);
                 sum += by * (0.5 - square * q) + along * (2.0 * square * q * q * along.dot(by));
             }
