@@ -37,7 +37,8 @@ pub const RATE: f32 = 11.0;
 pub const OWN: f32 = 0.4;
 /// μ of every step but the first.
 pub const MOMENTUM: f32 = 0.7;
-/// Cloth further above the body than this does not meet it on its way, metres. (30 mm are no better.)
+/// Cloth further above the body than this does not meet it on its way, metres. (With 30 mm the dress is as good; with 6
+/// its energy is 2.0 in place of 1.8, and no time is saved.)
 pub const REACH: f32 = 0.01;
 
 impl Kernel for Polish<&[f32], &mut [f32], &[u32]> {
@@ -114,7 +115,7 @@ impl crate::suite::Suite for Polish<Vec<f32>, Vec<f32>, Vec<u32>> {
             up * (near.length() - step.dot(up)).max(0.0)
         });
         let moved = positions.iter().zip(&steps).flat_map(|(at, by)| (at + by).to_array());
-        let [moves, near] = [steps.iter().copied().collect::<Vec<_>>(), lacks.collect()];
+        let [moves, near] = [steps.clone(), lacks.collect()];
         let flat = |points: Vec<glam::DVec3>| Some(points.iter().flat_map(|it| it.to_array()).collect());
         vec![flat(moves), flat(near), Some(moved.collect())]
     }
