@@ -104,3 +104,9 @@ export function difference(a: ArrayLike<number>, b: ArrayLike<number>): number {
   }
   return largest;
 }
+
+/** Share of the numbers that differ by more than `tolerance`. */
+export function shareBeyond(a: ArrayLike<number>, b: ArrayLike<number>, tolerance: number): number {
+  const apart = Array.from(a, (value, i) => Math.abs(value - b[i]!)).filter((error) => !(error <= tolerance));
+  return apart.length / a.length;
+}
