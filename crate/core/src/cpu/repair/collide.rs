@@ -50,8 +50,8 @@ fn kernel<S: Simd>(simd: S, positions: &[f32], body: &Posed, seeds: &[u32], push
 
 /// The displacement that brings `point` out of reach. Where cloth comes near another part of the body than its own, as
 /// in an armpit, or hangs free, the nearer part decides. (When the part it was deeper inside of decided, as for a union
-/// of parts, a search that ended on the far side of a limb threw cloth 47 mm off, and a skirt trembled by 11 % more, not
-/// 1.)
+/// of parts, a search that ended on the far side of a limb threw cloth 47 mm off, and a skirt trembled by 11 % more,
+/// not 1.)
 #[inline(always)]
 fn displacement<S: Simd>(simd: S, point: Vec3, body: &Posed, seeds: &[u32], landmarks: &Landmarks) -> Vec3 {
     let (own, other) = parted(seeds);
