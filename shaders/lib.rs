@@ -2,8 +2,8 @@
 //! This table holds what the host must know of each: its text, bindings and `Params`. A test compares it with the WGSL.
 //!
 //! `NAME.VARIANT.wgsl` does what `NAME.wgsl` does, for special operands or adapters. Text that several shaders share
-//! has a file of its own: `attend.edge.wgsl`, and the parts of `collide` and `settle`. Rows that are read as vec4 are
-//! padded with zeros to whole vec4. [n, 3] is not padded, so it can be a vertex attribute.
+//! has a file of its own: `attend.edge.wgsl`, `diffuse.pull.wgsl`, and the parts of `collide` and `settle`. Rows that
+//! are read as vec4 are padded with zeros to whole vec4. [n, 3] is not padded, so it can be a vertex attribute.
 
 #![forbid(unsafe_code)]
 
@@ -110,7 +110,7 @@ params! {
     /// `Params` of normals.wgsl.
     Normals { vertices: u32 }
     /// `Params` of polish.wgsl.
-    Polish { vertices: u32, own: f32, others: f32, momentum: f32, most: f32 }
+    Polish { vertices: u32, own: f32, others: f32, rate: f32, momentum: f32, most: f32 }
     /// `Params` of pull.wgsl.
     Pull { vertices: u32 }
     /// `Params` of ride.wgsl.
@@ -166,9 +166,9 @@ shaders! {
     /// Positions, offsets, corners -> normals.
     NORMALS: Normals, "normals" + [], [Read Read Read Write], [64, 1];
     /// Offsets, neighbours, share, pulls -> moves, positions.
-    POLISH: Polish, "polish" + [], [Read Read Read Read Write Write Write], [64, 1];
+    POLISH: Polish, "polish" + ["diffuse.pull"], [Read Read Read Read Write Write Write], [64, 1];
     /// Offsets, neighbours, pulls -> pulls.
-    DIFFUSE: Diffuse, "diffuse" + [], [Read Read Read Write], [64, 1];
+    DIFFUSE: Diffuse, "diffuse" + ["diffuse.pull"], [Read Read Read Write], [64, 1];
     /// Offsets, neighbours, squares, positions -> pulls.
     PULL: Pull, "pull" + [], [Read Read Read Read Write], [64, 1];
     /// Corners, coordinates, positions, normals -> riders.

@@ -5,15 +5,13 @@ struct Params {
     // Of a vertex's own pull, and of its neighbours' mean.
     own: f32,
     others: f32,
+    rate: f32,
     momentum: f32,
     // What a vertex at its gap from the body lacks to where the body is no longer met.
     most: f32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
-// First neighbour of each vertex [n + 1], and the neighbours.
-@group(0) @binding(1) var<storage, read> offsets: array<u32>;
-@group(0) @binding(2) var<storage, read> neighbours: array<u32>;
 // [1]
 @group(0) @binding(3) var<storage, read> share: array<f32>;
 // [n, 3]
@@ -25,25 +23,16 @@ struct Params {
 // [n, 3]
 @group(0) @binding(7) var<storage, read_write> positions: array<f32>;
 
-fn pull(i: u32) -> vec3<f32> {
-    return vec3(pulls[3u * i], pulls[3u * i + 1u], pulls[3u * i + 2u]);
-}
-
 @compute @workgroup_size(64)
 fn polish(@builtin(global_invocation_id) id: vec3<u32>) {
     let i = id.x;
     if (i >= params.vertices) {
         return;
     }
-    var sum = vec3(0.0);
-    for (var k = offsets[i]; k < offsets[i + 1u]; k++) {
-        sum += pull(neighbours[k]);
-    }
-    let mean = sum / f32(max(offsets[i + 1u] - offsets[i], 1u));
     // What was there before the first step, which has no momentum, may be anything.
     let last = vec3(moves[3u * i], moves[3u * i + 1u], moves[3u * i + 2u]);
     let on = select(vec3(0.0), last * params.momentum, params.momentum > 0.0);
-    var by = (pull(i) * params.own + mean * params.others + on) * share[0];
+    var by = (diffused_pull(i) * params.rate + on) * share[0];
     let lacks = vec3(near[3u * i], near[3u * i + 1u], near[3u * i + 2u]);
     let lack = length(lacks);
     if (lack > 0.0) {

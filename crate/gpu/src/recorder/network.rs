@@ -190,9 +190,9 @@ impl Record for Polish<Id, Id, IndexId> {
             recorder.rows(near, 3, 3),
             recorder.rows(positions, 3, 3),
         ];
-        let (own, others) = (polish::RATE * polish::OWN, polish::RATE * (1.0 - polish::OWN));
+        let (own, others, rate) = (polish::OWN, 1.0 - polish::OWN, polish::RATE);
         let momentum = if first { 0.0 } else { polish::MOMENTUM };
-        let params = shaders::Polish { vertices: n as u32, own, others, momentum, most: polish::REACH - GAP };
+        let params = shaders::Polish { vertices: n as u32, own, others, rate, momentum, most: polish::REACH - GAP };
         recorder.dispatch(&shaders::POLISH, params, &operands, [n, 1], positions);
     }
 }

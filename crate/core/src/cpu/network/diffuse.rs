@@ -40,11 +40,15 @@ impl crate::suite::Suite for Diffuse<Vec<f32>, Vec<f32>, Vec<u32>> {
 
     fn truth(&self) -> Vec<Option<Vec<f64>>> {
         let pulls = crate::suite::points(&self.pulls);
-        let shared = |i: usize| {
-            let row = &self.neighbours[self.offsets[i] as usize..self.offsets[i + 1] as usize];
-            let mean = row.iter().map(|j| pulls[*j as usize]).sum::<glam::DVec3>() / row.len().max(1) as f64;
-            (f64::from(OWN) * pulls[i] + f64::from(1.0 - OWN) * mean).to_array()
-        };
-        vec![Some((0..pulls.len()).flat_map(shared).collect())]
+        let graph = Graph { offsets: &self.offsets[..], neighbours: &self.neighbours };
+        vec![Some((0..pulls.len()).flat_map(|i| wide(graph, &pulls, i).to_array()).collect())]
     }
+}
+
+/// [`diffused`] in f64.
+#[cfg(feature = "suite")]
+pub(super) fn wide(graph: Graph<&[u32]>, pulls: &[glam::DVec3], i: usize) -> glam::DVec3 {
+    let neighbours = graph.of(i);
+    let mean = neighbours.iter().map(|j| pulls[*j as usize]).sum::<glam::DVec3>() / neighbours.len().max(1) as f64;
+    f64::from(OWN) * pulls[i] + f64::from(1.0 - OWN) * mean
 }

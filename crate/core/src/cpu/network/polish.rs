@@ -97,10 +97,9 @@ impl crate::suite::Suite for Polish<Vec<f32>, Vec<f32>, Vec<u32>> {
     fn truth(&self) -> Vec<Option<Vec<f64>>> {
         let points = [&self.pulls, &self.moves, &self.near, &self.positions].map(|it| crate::suite::points(it));
         let [pulls, moves, near, positions] = points;
+        let graph = Graph { offsets: &self.offsets[..], neighbours: &self.neighbours };
         let free = |i: usize| {
-            let row = &self.neighbours[self.offsets[i] as usize..self.offsets[i + 1] as usize];
-            let mean = row.iter().map(|j| pulls[*j as usize]).sum::<glam::DVec3>() / row.len().max(1) as f64;
-            let pull = f64::from(OWN) * pulls[i] + f64::from(1.0 - OWN) * mean;
+            let pull = super::diffuse::wide(graph, &pulls, i);
             let on = if self.first { glam::DVec3::ZERO } else { f64::from(MOMENTUM) * moves[i] };
             f64::from(self.share[0]) * (f64::from(RATE) * pull + on)
         };
