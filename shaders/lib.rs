@@ -110,7 +110,7 @@ params! {
     /// `Params` of normals.wgsl.
     Normals { vertices: u32 }
     /// `Params` of polish.wgsl.
-    Polish { vertices: u32, own: f32, others: f32, rate: f32, momentum: f32, most: f32 }
+    Polish { vertices: u32, own: f32, others: f32, rate: f32, momentum: f32, reach: f32, gap: f32 }
     /// `Params` of pull.wgsl.
     Pull { vertices: u32 }
     /// `Params` of ride.wgsl.
@@ -165,8 +165,8 @@ shaders! {
     LINEAR_ROW: Linear, "linear.row" + [], [Read Read Read Write], [8, 1];
     /// Positions, offsets, corners -> normals.
     NORMALS: Normals, "normals" + [], [Read Read Read Write], [64, 1];
-    /// Offsets, neighbours, share, pulls -> moves, positions.
-    POLISH: Polish, "polish" + ["diffuse.pull"], [Read Read Read Read Write Write Write], [64, 1];
+    /// Offsets, neighbours, share, facing, pulls -> moves, near, positions.
+    POLISH: Polish, "polish" + ["diffuse.pull"], [Read Read Read Read Read Write Write Write], [64, 1];
     /// Offsets, neighbours, pulls -> pulls.
     DIFFUSE: Diffuse, "diffuse" + ["diffuse.pull"], [Read Read Read Write], [64, 1];
     /// Offsets, neighbours, squares, positions -> pulls.

@@ -7,21 +7,24 @@ struct Params {
     others: f32,
     rate: f32,
     momentum: f32,
-    // What a vertex at its gap from the body lacks to where the body is no longer met.
-    most: f32,
+    // How far above the body a vertex meets it, and is kept.
+    reach: f32,
+    gap: f32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
 // [1]
 @group(0) @binding(3) var<storage, read> share: array<f32>;
+// Unit normals of the cloth before the first step [n, 3].
+@group(0) @binding(4) var<storage, read> facing: array<f32>;
 // [n, 3]
-@group(0) @binding(4) var<storage, read> pulls: array<f32>;
+@group(0) @binding(5) var<storage, read> pulls: array<f32>;
 // How far the last step went, and then this one [n, 3].
-@group(0) @binding(5) var<storage, read_write> moves: array<f32>;
+@group(0) @binding(6) var<storage, read_write> moves: array<f32>;
 // What each vertex lacks to where the body is no longer met, before the step, and then after it [n, 3].
-@group(0) @binding(6) var<storage, read_write> near: array<f32>;
+@group(0) @binding(7) var<storage, read_write> near: array<f32>;
 // [n, 3]
-@group(0) @binding(7) var<storage, read_write> positions: array<f32>;
+@group(0) @binding(8) var<storage, read_write> positions: array<f32>;
 
 @compute @workgroup_size(64)
 fn polish(@builtin(global_invocation_id) id: vec3<u32>) {
@@ -29,22 +32,27 @@ fn polish(@builtin(global_invocation_id) id: vec3<u32>) {
     if (i >= params.vertices) {
         return;
     }
-    // What was there before the first step, which has no momentum, may be anything.
+    let first = params.momentum == 0.0;
+    // What was there before the first step may be anything.
     let last = vec3(moves[3u * i], moves[3u * i + 1u], moves[3u * i + 2u]);
-    let on = select(vec3(0.0), last * params.momentum, params.momentum > 0.0);
+    let on = select(last * params.momentum, vec3(0.0), first);
     var by = (diffused_pull(i) * params.rate + on) * share[0];
-    let lacks = vec3(near[3u * i], near[3u * i + 1u], near[3u * i + 2u]);
+    var lacks = vec3(near[3u * i], near[3u * i + 1u], near[3u * i + 2u]);
+    let ways = vec3(facing[3u * i], facing[3u * i + 1u], facing[3u * i + 2u]);
+    // Inside the body, from which the cloth would come out with its face to it.
+    let turned = first && dot(lacks, lacks) > params.reach * params.reach && dot(lacks, ways) < 0.0;
+    lacks = select(lacks, vec3(0.0), turned);
     let lack = length(lacks);
     if (lack > 0.0) {
         let up = lacks / lack;
         let after = lack - dot(by, up);
-        let too_near = max(after - params.most, 0.0);
+        let too_near = max(after - (params.reach - params.gap), 0.0);
         by += up * too_near;
-        let left = up * max(after - too_near, 0.0);
-        near[3u * i] = left.x;
-        near[3u * i + 1u] = left.y;
-        near[3u * i + 2u] = left.z;
+        lacks = up * max(after - too_near, 0.0);
     }
+    near[3u * i] = lacks.x;
+    near[3u * i + 1u] = lacks.y;
+    near[3u * i + 2u] = lacks.z;
     moves[3u * i] = by.x;
     moves[3u * i + 1u] = by.y;
     moves[3u * i + 2u] = by.z;

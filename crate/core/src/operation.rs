@@ -173,8 +173,10 @@ operations! { $
         neighbours: I,
         /// What the step counts in this prediction, 0 to 1 [1].
         share: R,
-        /// Whether it is the first step, which has no momentum.
+        /// Whether it is the first step, which has no momentum and looks which way the cloth faces.
         first: bool,
+        /// Unit normals of the cloth before that step [n, 3].
+        facing: R,
         /// [n, 3].
         pulls: R,
         /// How far the last step went, and then this one [n, 3].

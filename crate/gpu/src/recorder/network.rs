@@ -179,12 +179,13 @@ impl Record for Diffuse<Id, Id, IndexId> {
 
 impl Record for Polish<Id, Id, IndexId> {
     fn record(self, recorder: &mut Recorder) {
-        let Self { offsets, neighbours, share, first, pulls, moves, near, positions } = self;
+        let Self { offsets, neighbours, share, first, facing, pulls, moves, near, positions } = self;
         let n = recorder.length(positions) / 3;
         let operands = [
             recorder.indexed(offsets),
             recorder.indexed(neighbours),
             recorder.rows(share, 1, 4),
+            recorder.rows(facing, 3, 3),
             recorder.rows(pulls, 3, 3),
             recorder.rows(moves, 3, 3),
             recorder.rows(near, 3, 3),
@@ -192,7 +193,8 @@ impl Record for Polish<Id, Id, IndexId> {
         ];
         let (own, others, rate) = (polish::OWN, 1.0 - polish::OWN, polish::RATE);
         let momentum = if first { 0.0 } else { polish::MOMENTUM };
-        let params = shaders::Polish { vertices: n as u32, own, others, rate, momentum, most: polish::REACH - GAP };
+        let (vertices, reach) = (n as u32, polish::REACH);
+        let params = shaders::Polish { vertices, own, others, rate, momentum, reach, gap: GAP };
         recorder.dispatch(&shaders::POLISH, params, &operands, [n, 1], positions);
     }
 }

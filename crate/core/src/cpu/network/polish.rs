@@ -43,20 +43,32 @@ pub const REACH: f32 = 0.01;
 
 impl Kernel for Polish<&[f32], &mut [f32], &[u32]> {
     fn run(self, _: &mut Cpu) {
-        let Self { offsets, neighbours, share, first, pulls, moves, near, positions } = self;
+        let Self { offsets, neighbours, share, first, facing, pulls, moves, near, positions } = self;
         let (graph, pulls) = (Graph { offsets, neighbours }, pulls.as_chunks::<3>().0);
         let (rate, momentum) = (share[0] * RATE, share[0] * MOMENTUM);
         let moves = moves.as_chunks_mut::<3>().0.iter_mut().zip(near.as_chunks_mut::<3>().0);
-        for (i, ((by, near), position)) in moves.zip(positions.as_chunks_mut::<3>().0).enumerate() {
+        let cloth = positions.as_chunks_mut::<3>().0.iter_mut().zip(facing.as_chunks::<3>().0);
+        for (i, ((by, near), (position, facing))) in moves.zip(cloth).enumerate() {
             // What was there before the first step may be anything.
             let on = if first { Vec3::ZERO } else { Vec3::from_array(*by) * momentum };
             let step = diffused(graph, pulls, i) * rate + on;
-            let (step, lack) = kept_out(step, Vec3::from_array(*near));
+            let lack = Vec3::from_array(*near);
+            let turned = first && is_turned(lack, Vec3::from_array(*facing));
+            let (step, lack) = kept_out(step, if turned { Vec3::ZERO } else { lack });
             *by = step.to_array();
             *near = lack.to_array();
             *position = (Vec3::from_array(*position) + step).to_array();
         }
     }
+}
+
+/// Whether cloth that lacks so much to [`REACH`] is inside the body and would come out with its face to it. It is left
+/// to its neighbours' pulls: where a kick passed through a skirt, some of it came out behind the leg, edges grew to six
+/// times their length, and 38 frames of the dress had 85 times the energy of the simulation. Now it is 5. (The same in
+/// the search of the repair: nothing more.)
+#[inline(always)]
+fn is_turned(lack: Vec3, facing: Vec3) -> bool {
+    lack.length_squared() > REACH * REACH && lack.dot(facing) < 0.0
 }
 
 /// A step of a vertex that lacks so much to [`REACH`], such that it comes no nearer than the gap; and what it lacks
@@ -81,13 +93,14 @@ impl crate::suite::Suite for Polish<Vec<f32>, Vec<f32>, Vec<u32>> {
     fn operands(rng: &mut fastrand::Rng) -> Vec<Self> {
         let mut operand = |(n, share, first): (usize, f32, bool)| {
             let Graph { offsets, neighbours } = Graph::new(n, &crate::suite::triangles(rng, n));
-            let [pulls, mut moves, mut near, positions] = [0; 4].map(|_| crate::suite::numbers(rng, 3 * n, 1.0));
+            let [facing, pulls, mut moves, mut near, positions] =
+                [0; 5].map(|_| crate::suite::numbers(rng, 3 * n, 1.0));
             if first {
                 moves.fill(f32::NAN);
             }
             // Every third vertex is far from the body.
             near.as_chunks_mut::<3>().0.iter_mut().step_by(3).for_each(|near| *near = [0.0; 3]);
-            Self { offsets, neighbours, share: vec![share], first, pulls, moves, near, positions }
+            Self { offsets, neighbours, share: vec![share], first, facing, pulls, moves, near, positions }
         };
         [(1, 1.0, true), (2, 1.0, false), (67, 0.3, false), (67, 0.0, false), (257, 1.0, true), (257, 1.0, false)]
             .map(&mut operand)
@@ -95,8 +108,13 @@ impl crate::suite::Suite for Polish<Vec<f32>, Vec<f32>, Vec<u32>> {
     }
 
     fn truth(&self) -> Vec<Option<Vec<f64>>> {
-        let points = [&self.pulls, &self.moves, &self.near, &self.positions].map(|it| crate::suite::points(it));
-        let [pulls, moves, near, positions] = points;
+        let [facing, pulls, moves, mut near, positions] =
+            [&self.facing, &self.pulls, &self.moves, &self.near, &self.positions].map(|it| crate::suite::points(it));
+        for (near, facing) in near.iter_mut().zip(facing).filter(|_| self.first) {
+            if near.length() > f64::from(REACH) && near.dot(facing) < 0.0 {
+                *near = glam::DVec3::ZERO;
+            }
+        }
         let graph = Graph { offsets: &self.offsets[..], neighbours: &self.neighbours };
         let free = |i: usize| {
             let pull = super::diffuse::wide(graph, &pulls, i);

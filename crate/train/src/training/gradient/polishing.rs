@@ -58,8 +58,9 @@ pub fn forward(cpu: &mut Cpu, cut: &Cut, from: &[f32], trail: &mut [f32], polish
         cpu.compute(Pull { offsets, neighbours, squares, positions: &*start, pulls: &mut pulls[..] });
         cpu.compute(Diffuse { offsets, neighbours, pulls: &pulls[..], diffused: &mut diffused[..] });
         let (share, pulls, moves) = (&[1.0][..], &diffused[..], &mut moves[..]);
-        let (near, positions) = (&mut near[..], &mut *polished);
-        cpu.compute(Polish { offsets, neighbours, share, first: k == 0, pulls, moves, near, positions });
+        // Nothing is near, so which way the cloth faces does not matter.
+        let (first, facing, near, positions) = (k == 0, &*start, &mut near[..], &mut *polished);
+        cpu.compute(Polish { offsets, neighbours, share, first, facing, pulls, moves, near, positions });
     }
 }
 
