@@ -38,11 +38,13 @@ fn polish(@builtin(global_invocation_id) id: vec3<u32>) {
     let on = select(last * params.momentum, vec3(0.0), first);
     var by = (diffused_pull(i) * params.rate + on) * share[0];
     var lacks = vec3(near[3u * i], near[3u * i + 1u], near[3u * i + 2u]);
-    let ways = vec3(facing[3u * i], facing[3u * i + 1u], facing[3u * i + 2u]);
-    // Inside the body, from which the cloth would come out with its face to it.
-    let turned = first && dot(lacks, lacks) > params.reach * params.reach && dot(lacks, ways) < 0.0;
-    lacks = select(lacks, vec3(0.0), turned);
     let lack = length(lacks);
+    if (first && lack > params.reach) {
+        // The deeper inside the body, the more along the cloth's own normal.
+        let normal = vec3(facing[3u * i], facing[3u * i + 1u], facing[3u * i + 2u]);
+        let leant = lacks / lack + normal * (lack / params.reach - 1.0);
+        lacks = leant * (lack / max(length(leant), 1e-30));
+    }
     if (lack > 0.0) {
         let up = lacks / lack;
         let after = lack - dot(by, up);

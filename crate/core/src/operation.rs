@@ -173,7 +173,7 @@ operations! { $
         neighbours: I,
         /// What the step counts in this prediction, 0 to 1 [1].
         share: R,
-        /// Whether it is the first step, which has no momentum and looks which way the cloth faces.
+        /// Whether it is the first step, which has no momentum and leans `near` to the normals.
         first: bool,
         /// Unit normals of the cloth before that step [n, 3].
         facing: R,

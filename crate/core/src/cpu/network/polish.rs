@@ -53,8 +53,8 @@ impl Kernel for Polish<&[f32], &mut [f32], &[u32]> {
             let on = if first { Vec3::ZERO } else { Vec3::from_array(*by) * momentum };
             let step = diffused(graph, pulls, i) * rate + on;
             let lack = Vec3::from_array(*near);
-            let turned = first && is_turned(lack, Vec3::from_array(*facing));
-            let (step, lack) = kept_out(step, if turned { Vec3::ZERO } else { lack });
+            let lack = if first { leant(lack, Vec3::from_array(*facing)) } else { lack };
+            let (step, lack) = kept_out(step, lack);
             *by = step.to_array();
             *near = lack.to_array();
             *position = (Vec3::from_array(*position) + step).to_array();
@@ -62,13 +62,19 @@ impl Kernel for Polish<&[f32], &mut [f32], &[u32]> {
     }
 }
 
-/// Whether cloth that lacks so much to [`REACH`] is inside the body and would come out with its face to it. It is left
-/// to its neighbours' pulls: where a kick passed through a skirt, some of it came out behind the leg, edges grew to six
-/// times their length, and 38 frames of the dress had 85 times the energy of the simulation. Now it is 5. (The same in
-/// the search of the repair: nothing more.)
+/// What a vertex lacks to [`REACH`], the more along its own normal the deeper it is inside the body: there the nearest
+/// skin does not tell on which side of a limb the cloth belongs. Where a kick passed through a skirt, some of it came
+/// out behind the leg, and edges grew to six times their length. 38 frames of that dress had 85 times the energy of the
+/// simulation; without a plane where the normals are opposed 5.2 times, with this 4.2, and slow motion trembles by 0.08
+/// in place of 0.10 m/s². (Twice as steep: the same. At most twice the normal: 4.4. The same in the search of the
+/// repair: nothing more.)
 #[inline(always)]
-fn is_turned(lack: Vec3, facing: Vec3) -> bool {
-    lack.length_squared() > REACH * REACH && lack.dot(facing) < 0.0
+fn leant(lack: Vec3, facing: Vec3) -> Vec3 {
+    let length = lack.length();
+    if length <= REACH {
+        return lack;
+    }
+    (lack / length + facing * (length / REACH - 1.0)).normalize_or_zero() * length
 }
 
 /// A step of a vertex that lacks so much to [`REACH`], such that it comes no nearer than the gap; and what it lacks
@@ -111,9 +117,8 @@ impl crate::suite::Suite for Polish<Vec<f32>, Vec<f32>, Vec<u32>> {
         let [facing, pulls, moves, mut near, positions] =
             [&self.facing, &self.pulls, &self.moves, &self.near, &self.positions].map(|it| crate::suite::points(it));
         for (near, facing) in near.iter_mut().zip(facing).filter(|_| self.first) {
-            if near.length() > f64::from(REACH) && near.dot(facing) < 0.0 {
-                *near = glam::DVec3::ZERO;
-            }
+            let (up, deep) = (near.normalize_or_zero(), near.length() / f64::from(REACH) - 1.0);
+            *near = (up + facing * deep.max(0.0)).normalize_or_zero() * near.length();
         }
         let graph = Graph { offsets: &self.offsets[..], neighbours: &self.neighbours };
         let free = |i: usize| {
