@@ -8,6 +8,7 @@ export const PAIRS = {
   'andy-dress': { vertices: 6000, minutes: 60, shown: 'throw' },
   'andy-trousers': { vertices: 2100, minutes: 60, shown: 'throw' },
   'anna-tshirt': { vertices: 2100, minutes: 60, shown: 'throw' },
+  'anna-skirt': { vertices: 2100, minutes: 60, shown: 'throw' },
   'anna-dress': { vertices: 3000, minutes: 60, shown: 'throw' },
   'qman-robe': { vertices: 3000, minutes: 60, mixed: 2300, shown: 'throw' },
   'qman-tshirt': { vertices: 2100, minutes: 60, shown: 'throw' },

@@ -10,6 +10,7 @@ mod energy;
 mod fine;
 mod penetration;
 mod smooth;
+mod start;
 #[cfg(test)]
 mod tests;
 
@@ -21,7 +22,7 @@ use ctsn_core::pose::BodyFrame;
 
 /// Every loss of a training on simulated poses.
 pub const LOSSES: &[Term] =
-    &[coarse::COARSE, fine::FINE, curvature::CURVATURE, penetration::PENETRATION, energy::TENSION];
+    &[coarse::COARSE, start::START, fine::FINE, curvature::CURVATURE, penetration::PENETRATION, energy::TENSION];
 
 /// Every loss of a training without truth: the sum is what a simulation minimises.
 pub const SELF_SUPERVISED: &[Term] = &[energy::ENERGY, contact::CONTACT];
@@ -70,8 +71,15 @@ pub(crate) enum Known {
 pub enum Prediction {
     /// By the skeleton stream alone. The whole one where an ablation leaves one stream.
     Coarse,
+    /// By all that the training runs, before it is polished. The whole one where nothing is.
+    Start,
     /// By all that the training runs.
     Whole,
+}
+
+impl Prediction {
+    /// From the first that is made to the last.
+    pub(crate) const ALL: [Self; 3] = [Self::Coarse, Self::Start, Self::Whole];
 }
 
 /// What a loss is made for.
@@ -112,7 +120,7 @@ impl Term {
 
     /// Whether it reads anything of a pose.
     pub(crate) fn reads_any(&self, known: Known) -> bool {
-        [Prediction::Coarse, Prediction::Whole].iter().any(|prediction| self.reads(known, *prediction))
+        Prediction::ALL.iter().any(|prediction| self.reads(known, *prediction))
     }
 }
 

@@ -52,7 +52,7 @@ impl Item {
             let predicted = lane.value(shared, prediction);
             for (i, term, loss) in losses.each() {
                 let here = |read: &Prediction| recording.prediction(*read) == prediction;
-                let mut places = [Prediction::Coarse, Prediction::Whole].into_iter().filter(here);
+                let mut places = Prediction::ALL.into_iter().filter(here);
                 if places.any(|read| term.reads(self.known, read)) {
                     let target = self.targets.get(i).map_or(&[][..], Vec::as_slice);
                     values[i] = loss.value(predicted, target, term.weight * scale, &mut gradient);

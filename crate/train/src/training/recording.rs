@@ -16,6 +16,8 @@ pub(crate) struct Recording {
     pub activations: Activations<Id>,
     /// The coarse prediction where both streams learn: what is left of the network otherwise learns the truth itself.
     coarse: Option<Id>,
+    /// What the polish starts from, where there is one.
+    start: Option<Id>,
 }
 
 impl Recording {
@@ -37,12 +39,14 @@ impl Recording {
             skin(&mut tape, rest, &recorded.skinning, transforms, Space::Body, &mut coarse);
             coarse
         });
+        let mut start = None;
         if let (Some(cut), Streams::Both) = (&recorded.cut, streams) {
+            start = Some(activations.positions);
             let Graph { offsets, neighbours } = recorded.graph;
             let at = Recorded { offsets, neighbours, squares: cut.squares };
             activations.positions = tape.polish(at, &activations.positions, 3 * model.sizes.vertices, cut.steps);
         }
-        (Self { tape, activations, coarse }, shared, learning)
+        (Self { tape, activations, coarse, start }, shared, learning)
     }
 
     /// A lane with losses behind the predictions.
@@ -54,12 +58,13 @@ impl Recording {
     pub fn prediction(&self, prediction: Prediction) -> Id {
         match prediction {
             Prediction::Coarse => self.coarse.unwrap_or(self.activations.positions),
+            Prediction::Start => self.start.unwrap_or(self.activations.positions),
             Prediction::Whole => self.activations.positions,
         }
     }
 
     /// Every prediction once, coarse before whole.
     pub fn predictions(&self) -> impl Iterator<Item = Id> {
-        self.coarse.into_iter().chain([self.activations.positions])
+        self.coarse.into_iter().chain(self.start).chain([self.activations.positions])
     }
 }

@@ -76,6 +76,8 @@ pub struct Lane {
     gradients: Vec<Vec<f32>>,
     /// Where the gradient of a buffer is.
     slots: Vec<usize>,
+    /// What losses stand behind.
+    pub(super) losses: Vec<Id>,
 }
 
 /// Weights and constants of the model by buffer, shared by all lanes.
@@ -111,19 +113,20 @@ impl Tape {
     ///
     /// # Errors
     /// A loss behind an operation that has no gradient towards what learns before it: it would teach nothing. A loss on
-    /// what an operation reads that learns: a gradient has one source.
+    /// what an operation reads that learns: but for the polish, a gradient has one source.
     pub fn lane(&self, shared: &Shared, losses: &[Id]) -> Result<Lane> {
         for loss in losses {
             if let Gradient::Unknown(operation) | Gradient::Inner(operation) = self.gradients[loss.0] {
                 return Err(Error::Training(format!("a loss behind {operation}, which has no gradient on the tape")));
             }
-            if self.steps.iter().filter_map(|kept| kept.flow.as_ref()).any(|flow| flow.to.contains(loss)) {
+            if self.steps.iter().filter_map(|kept| kept.flow.as_ref()).any(|flow| !flow.adds && flow.to.contains(loss))
+            {
                 return Err(Error::Training("a loss on what an operation reads that learns itself".to_owned()));
             }
         }
         let shared = shared.0.len();
         let own = |(i, length): (usize, &usize)| vec![0.0; if i < shared { 0 } else { *length }];
-        let (slots, lengths) = self.slots(shared);
+        let (slots, lengths) = self.slots(shared, losses);
         Ok(Lane {
             level: Level::new(),
             scratch: gradient::Scratch::default(),
@@ -131,13 +134,14 @@ impl Tape {
             values: self.lengths.iter().enumerate().map(own).collect(),
             gradients: lengths.into_iter().map(|length| vec![0.0; length]).collect(),
             slots,
+            losses: losses.to_vec(),
         })
     }
 
     /// Slot of every buffer's gradient, and the slots' lengths. On the way back, a gradient is done with after the
     /// operation that made its buffer: its slot serves the next of the same length, so that the cache holds more of
     /// what is worked on.
-    fn slots(&self, shared: usize) -> (Vec<usize>, Vec<usize>) {
+    fn slots(&self, shared: usize, losses: &[Id]) -> (Vec<usize>, Vec<usize>) {
         let learns = |id: Id| matches!(self.gradients[id.0], Gradient::Known | Gradient::Inner(_));
         let mut slots: Vec<usize> = (0..self.lengths.len()).collect();
         let mut lengths: Vec<usize> =
@@ -146,7 +150,8 @@ impl Tape {
         let flows = || self.steps.iter().filter_map(|kept| kept.flow.as_ref());
         flows().for_each(|flow| flow.to.iter().chain(&flow.through).for_each(|id| read[id.0] = true));
         let mut free: Vec<usize> = Vec::new();
-        let mut placed = vec![false; self.lengths.len()];
+        // A loss writes its gradient before the first operation: that slot is never another's.
+        let mut placed: Vec<bool> = (0..self.lengths.len()).map(|i| losses.contains(&Id(i))).collect();
         for flow in flows().rev() {
             for id in flow.through.iter().chain(&flow.to).filter(|id| id.0 >= shared && learns(**id)) {
                 if std::mem::replace(&mut placed[id.0], true) {
@@ -157,9 +162,8 @@ impl Tape {
                     slots[id.0] = free.swap_remove(at);
                 }
             }
-            // A loss writes its gradient before the first operation: that slot is never another's.
             let done = std::iter::once(&flow.from).chain(&flow.through);
-            free.extend(done.filter(|id| read[id.0]).map(|id| slots[id.0]));
+            free.extend(done.filter(|id| read[id.0] && !losses.contains(id)).map(|id| slots[id.0]));
         }
         (slots, lengths)
     }

@@ -29,11 +29,13 @@ pub(super) struct Flow {
     pub to: Vec<Id>,
     /// Operands where it ends by design.
     pub ends: Vec<Id>,
+    /// Whether what a loss left at the operands stays, and this comes to it.
+    pub adds: bool,
 }
 
 impl Flow {
     fn new<const N: usize>(from: Id, to: [Id; N]) -> Self {
-        Self { from, through: None, to: to.to_vec(), ends: Vec::new() }
+        Self { from, through: None, to: to.to_vec(), ends: Vec::new(), adds: false }
     }
 }
 
@@ -42,7 +44,7 @@ pub(super) fn flow(step: &Step) -> Option<Flow> {
     let operation = match step {
         Step::Operation(operation) => operation,
         Step::Add { residual, total, .. } => return Some(Flow::new(*total, [*residual])),
-        Step::Polish { from, polished, .. } => return Some(Flow::new(*polished, [*from])),
+        Step::Polish { from, polished, .. } => return Some(Flow { adds: true, ..Flow::new(*polished, [*from]) }),
     };
     match operation {
         Operation::Linear(it) => Some(Flow::new(it.y, [it.x, it.weight, it.bias])),
@@ -66,6 +68,9 @@ pub(super) fn backward(tape: &Tape, step: &Step, shared: &Shared, lane: &mut Lan
         }
         Step::Polish { cut, from, trail, polished } => {
             return lane.add_to(*polished, [*from], |lane, g, [dfrom]| {
+                if !lane.losses.contains(from) {
+                    dfrom.fill(0.0);
+                }
                 polishing::backward(&cut.of(tape, shared), lane.value(shared, *trail), g, dfrom);
             });
         }

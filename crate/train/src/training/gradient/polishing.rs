@@ -64,7 +64,7 @@ pub fn forward(cpu: &mut Cpu, cut: &Cut, from: &[f32], trail: &mut [f32], polish
     }
 }
 
-/// g [n, 3] towards the result -> dfrom (overwritten).
+/// g [n, 3] towards the result -> dfrom (added to).
 pub fn backward(cut: &Cut, trail: &[f32], g: &[f32], dfrom: &mut [f32]) {
     let g = g.as_chunks::<3>().0;
     let mut after: Vec<Vec3> = vec![Vec3::ZERO; g.len()];
@@ -100,7 +100,12 @@ pub fn backward(cut: &Cut, trail: &[f32], g: &[f32], dfrom: &mut [f32]) {
         std::mem::swap(&mut after, &mut current);
         momentum = here;
     }
-    dfrom.as_chunks_mut::<3>().0.iter_mut().zip(current).for_each(|(d, by)| *d = by.to_array());
+    dfrom
+        .as_chunks_mut::<3>()
+        .0
+        .iter_mut()
+        .zip(current)
+        .for_each(|(d, by)| *d = (Vec3::from_array(*d) + by).to_array());
 }
 
 #[cfg(test)]
@@ -120,7 +125,7 @@ mod tests {
             .collect();
         let cut = Cut { graph: Graph { offsets: &offsets, neighbours: &neighbours }, squares: &squares };
         let [from, g, noise] = [0; 3].map(|_| (0..42).map(|_| rng.f32() * 2.0 - 1.0).collect::<Vec<f32>>());
-        let (mut trail, mut polished, mut gradient) = (vec![0.0; 6 * 42], vec![0.0; 42], vec![f32::NAN; 42]);
+        let (mut trail, mut polished, mut gradient) = (vec![0.0; 6 * 42], vec![0.0; 42], vec![0.0; 42]);
         forward(&mut Cpu::new(), &cut, &from, &mut trail, &mut polished);
         backward(&cut, &trail, &g, &mut gradient);
         let product = |a: &[f32], b: &[f32]| a.iter().zip(b).map(|(a, b)| f64::from(a * b)).sum::<f64>();

@@ -4,6 +4,7 @@ mod coarse;
 mod energy;
 mod fit;
 mod operation;
+mod start;
 mod unsimulated;
 mod weights;
 
