@@ -26,8 +26,12 @@ test('fifty in the coarse quality; auto gives some of them more, and what is out
   await page.getByLabel('Milliseconds per frame').fill(String(Math.min(Math.ceil(1.3 * milliseconds), 120)));
   // Some that try it, then the blend back.
   await frames(24);
-  const auto = await tally();
-  expect(auto.full).toBeGreaterThan(0);
+  // On a busy machine none has time to for a while.
+  const some = await page.waitForFunction(() => {
+    const { tally } = window.ctsnCrowd!;
+    return tally.full > 0 && tally;
+  });
+  const auto = (await some.jsonValue()) as Awaited<ReturnType<typeof tally>>;
   expect(auto.full).toBeLessThan(coarse);
   await page.screenshot({ path: `${out}/crowd.png` });
   expect(complaints).toEqual([]);
