@@ -27,11 +27,8 @@ test('fifty in the coarse quality; auto gives some of them more, and what is out
   // Some that try it, then the blend back.
   await frames(24);
   // On a busy machine none has time to for a while.
-  const some = await page.waitForFunction(() => {
-    const { tally } = window.ctsnCrowd!;
-    return tally.full > 0 && tally;
-  });
-  const auto = (await some.jsonValue()) as Awaited<ReturnType<typeof tally>>;
+  let auto = await tally();
+  await expect.poll(async () => (auto = await tally()).full, { timeout: 60_000 }).toBeGreaterThan(0);
   expect(auto.full).toBeLessThan(coarse);
   await page.screenshot({ path: `${out}/crowd.png` });
   expect(complaints).toEqual([]);

@@ -3,9 +3,9 @@
 //! polish drew back to 3.7 mm of the simulation in the air, but not over a body.
 
 use super::fine::Fine;
-use super::{Prediction, Term};
+use super::{Loss, Prediction, Term};
 
-/// Of a model that is polished.
+/// Of a model that is polished. (No other weight was tried.)
 pub(super) const START: Term = Term {
     name: "start",
     title: "what the polish starts from, poses learned from",
@@ -14,5 +14,5 @@ pub(super) const START: Term = Term {
     constants: &[],
     simulated: &[Prediction::Start],
     unsimulated: &[],
-    new: |scene| Ok((scene.model.cut.is_some() && scene.variant.mesh).then(|| Box::new(Fine) as Box<dyn super::Loss>)),
+    new: |scene| Ok((scene.model.cut.is_some() && scene.variant.mesh).then(|| Box::new(Fine) as Box<dyn Loss>)),
 };

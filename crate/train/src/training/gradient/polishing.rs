@@ -100,12 +100,9 @@ pub fn backward(cut: &Cut, trail: &[f32], g: &[f32], dfrom: &mut [f32]) {
         std::mem::swap(&mut after, &mut current);
         momentum = here;
     }
-    dfrom
-        .as_chunks_mut::<3>()
-        .0
-        .iter_mut()
-        .zip(current)
-        .for_each(|(d, by)| *d = (Vec3::from_array(*d) + by).to_array());
+    for (d, by) in dfrom.as_chunks_mut::<3>().0.iter_mut().zip(current) {
+        *d = (Vec3::from_array(*d) + by).to_array();
+    }
 }
 
 #[cfg(test)]
