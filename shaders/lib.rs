@@ -112,7 +112,7 @@ params! {
     /// `Params` of polish.wgsl.
     Polish { vertices: u32, own: f32, others: f32, rate: f32, momentum: f32, reach: f32, gap: f32 }
     /// `Params` of pull.wgsl.
-    Pull { vertices: u32 }
+    Pull { vertices: u32, rate: f32, reach: f32, gap: f32 }
     /// `Params` of ride.wgsl.
     Ride { riders: u32, least: f32 }
     /// `Params` of skin.wgsl.
@@ -170,7 +170,7 @@ shaders! {
     /// Offsets, neighbours, pulls -> pulls.
     DIFFUSE: Diffuse, "diffuse" + ["diffuse.pull"], [Read Read Read Write], [64, 1];
     /// Offsets, neighbours, squares, positions -> pulls.
-    PULL: Pull, "pull" + [], [Read Read Read Read Write], [64, 1];
+    PULL: Pull, "pull" + [], [Read Read Read Read Read Write], [64, 1];
     /// Corners, coordinates, positions, normals -> riders.
     RIDE: Ride, "ride" + [], [Read Read Read Read Write], [64, 1];
     /// Exposed body, its normals, offsets, fans, seeds, displacement -> positions.

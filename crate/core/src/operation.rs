@@ -148,6 +148,8 @@ operations! { $
         squares: R,
         /// x [n, 3].
         positions: R,
+        /// What each vertex lacks to where the body is no longer met, 0 where it is not [n, 3].
+        near: R,
         /// [n, 3].
         pulls: W,
     }
@@ -334,7 +336,7 @@ impl Operation<usize, usize, usize> {
                 attention + it.output * (1 + 6 + 2 + 7)
             }
             // An edge: difference, square, pull, sum.
-            Self::Pull(it) => 18 * it.neighbours + it.positions,
+            Self::Pull(it) => 18 * it.neighbours + it.positions + 12 * (it.positions / 3),
             // A sum over the neighbours, two shares.
             Self::Diffuse(it) => 3 * it.neighbours + 3 * it.pulls,
             // The same; a vertex: momentum, the move, and how near it is to the body.

@@ -16,7 +16,8 @@ pub(crate) fn polish<D: Device>(device: &mut D, model: &DeviceModel<D>, a: &mut 
     let Graph { offsets, neighbours } = &model.graph;
     let (squares, share, facing, positions) = (&cut.squares, &a.mesh_share, &a.normals, &mut a.positions);
     for step in 0..cut.steps {
-        device.run(Pull { offsets, neighbours, squares, positions: &*positions, pulls: &mut *pulls }.into());
+        let pull = Pull { offsets, neighbours, squares, positions: &*positions, near: &*near, pulls: &mut *pulls };
+        device.run(pull.into());
         device.run(Diffuse { offsets, neighbours, pulls: &*pulls, diffused: &mut *diffused }.into());
         let (pulls, moves, near, positions) = (&*diffused, &mut *moves, &mut *near, &mut *positions);
         let first = step == 0;

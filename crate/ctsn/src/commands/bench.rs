@@ -92,7 +92,7 @@ fn made_up(arguments: &Arguments) -> Result<(HostModel, Setup, Vec<Sample>)> {
     let mut model = ctsn_train::training::initial(&setup, &all, arguments.network, 1)?;
     // The repair must find the body where the cloth is predicted.
     let worn = samples.iter().map(|sample| worn(&model, sample)).collect::<Result<Vec<_>>>()?;
-    model.body = Some(ctsn_train::body::body(&setup, &worn.iter().collect::<Vec<_>>())?);
+    model.body = Some(ctsn_train::body::body(&setup, &worn.iter().collect::<Vec<_>>(), &[])?);
     Ok((model, setup, samples))
 }
 

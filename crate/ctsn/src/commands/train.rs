@@ -72,7 +72,8 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let mut slices = slices(arguments, &dataset)?;
     let files = Files { checkpoint: output.with_extension("checkpoint"), curve: output.with_extension("curve.csv") };
     // Before the training: an unusable body must not be found out after hours.
-    let body = body(&dataset.setup, &slices.learned())?;
+    let fine = if arguments.self_supervised { &[][..] } else { &slices.train };
+    let body = body(&dataset.setup, &slices.learned(), fine)?;
     let [images, coarse] = images(arguments, &dataset.setup, &slices)?;
     slices.add(&images, &coarse);
     let by: By = match arguments {

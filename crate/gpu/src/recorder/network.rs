@@ -149,16 +149,18 @@ impl Record for Attend<Id, Id, IndexId> {
 
 impl Record for Pull<Id, Id, IndexId> {
     fn record(self, recorder: &mut Recorder) {
-        let Self { offsets, neighbours, squares, positions, pulls } = self;
+        let Self { offsets, neighbours, squares, positions, near, pulls } = self;
         let n = recorder.length(positions) / 3;
         let operands = [
             recorder.indexed(offsets),
             recorder.indexed(neighbours),
             recorder.pack(("squares", squares.0), |it| it.values(squares).to_vec()),
             recorder.rows(positions, 3, 3),
+            recorder.rows(near, 3, 3),
             recorder.rows(pulls, 3, 3),
         ];
-        recorder.dispatch(&shaders::PULL, shaders::Pull { vertices: n as u32 }, &operands, [n, 1], pulls);
+        let params = shaders::Pull { vertices: n as u32, rate: polish::RATE, reach: polish::REACH, gap: GAP };
+        recorder.dispatch(&shaders::PULL, params, &operands, [n, 1], pulls);
     }
 }
 

@@ -12,8 +12,9 @@ mod tests;
 use crate::Result;
 use crate::dataset::{Sample, Setup};
 use buried::buried;
-use ctsn_cloth::simulate::{covering, felt, outer_skin};
+use ctsn_cloth::simulate::{covering, felt, fitted, outer_skin};
 use ctsn_cloth::wrap::apart;
+use ctsn_core::cpu::repair::closest::GAP;
 use ctsn_core::model::Body;
 use ctsn_core::topology::Graph;
 use ctsn_rig::path::to_body_frame;
@@ -33,19 +34,24 @@ const VERTICES: usize = 2600;
 const POSES: usize = 600;
 /// Poses that the skin is raised for, spread over the samples.
 const BENT: usize = 60;
+/// Poses whose cloth the skin is fitted to, spread over the samples.
+const WORN: usize = 150;
 /// Poses that are searched for skin inside another part of the body, spread over the samples.
 const CREASED: usize = 150;
 
-/// The body for the cloth of `setup`, as `samples` wear it.
-pub fn body(setup: &Setup, samples: &[&Sample]) -> Result<Body<Vec<f32>, Vec<u32>>> {
+/// The body for the cloth of `setup`, as `samples` wear it. It is fitted to those whose cloth was simulated finely,
+/// `fine`: coarse cloth, and what nobody simulated, may lie in it where it should not.
+pub fn body(setup: &Setup, samples: &[&Sample], fine: &[&Sample]) -> Result<Body<Vec<f32>, Vec<u32>>> {
     let character = setup.character()?;
     // What the simulated cloth did not feel is in its way nowhere: a figure's hands sank into its skirt, and trembled
     // there.
     let felt = felt(&character, &setup.cloth())?;
-    let every = |count: usize| samples.iter().step_by(samples.len().div_ceil(count).max(1));
+    let every = |count: usize| some(samples, count);
     let bent: Vec<_> = every(BENT).map(|sample| skinning(&character, sample)).collect();
     let skin = outer_skin(&character, &apart(&character), VERTICES)?;
-    let mut skin = covering(skin, &character, &bent).part(|joint| felt[joint]);
+    let skin = covering(skin, &character, &bent).part(|joint| felt[joint]);
+    let worn = |sample: &&Sample| (skinning(&character, sample), vertices(&sample.truth));
+    let mut skin = fitted(skin, f64::from(GAP), &some(fine, WORN).map(worn).collect::<Vec<_>>());
     let poses: Vec<&&Sample> = every(POSES).collect();
     tear(&mut skin, &character, &poses);
     let nearest = |sample: &&&Sample| nearest(&skin, &character, sample);
@@ -65,6 +71,11 @@ pub fn body(setup: &Setup, samples: &[&Sample]) -> Result<Body<Vec<f32>, Vec<u32
     skin.mesh.triangles.retain(|triangle| triangle.iter().all(|i| kept[*i as usize]));
     let buried = buried(&skin, &character, &every(CREASED).collect::<Vec<_>>());
     Ok(cut(&skin, &character, &kept, &seeds, &buried))
+}
+
+/// At most so many of them, spread over them all.
+fn some<'a, 'b>(of: &'a [&'b Sample], count: usize) -> impl Iterator<Item = &'a &'b Sample> {
+    of.iter().step_by(of.len().div_ceil(count).max(1))
 }
 
 /// `N·A_j` per joint in the pose of a sample: to its body frame.

@@ -32,7 +32,7 @@ fn what_the_cloth_does_not_feel_is_no_obstacle() {
     let (mut setup, samples) = synthetic::dataset(400, 6, 2);
     // Cloth around the lowest 0.45 m of 1.5.
     setup.template.iter_mut().skip(1).step_by(3).for_each(|height| *height *= 0.3);
-    let body = body(&setup, &samples.iter().collect::<Vec<_>>()).unwrap();
+    let body = body(&setup, &samples.iter().collect::<Vec<_>>(), &[]).unwrap();
     let top = body.rest.iter().skip(1).step_by(3).fold(0.0, |top: f32, height| top.max(*height));
     assert!((0.7..1.1).contains(&top), "kept up to {top} m");
 }

@@ -1,4 +1,4 @@
-//! The poses whose cloth is simulated coarsely: frames that are learned from, and mixed poses, in turn.
+//! The poses whose cloth is simulated coarsely: mixed ones; frames that are learned from, where nothing can be mixed.
 
 use super::order;
 use ctsn_rig::Pose;
@@ -20,11 +20,15 @@ impl CoarsePoses {
         Self { frames }
     }
 
-    /// Pose number `number`; `None` where nothing can be mixed and the frames are used up.
+    /// Pose number `number`; `None` where nothing can be mixed and the frames are used up. (Of a stranger's T-shirt 360
+    /// were frames and 350 mixed, beside 243 fine poses. Kernel regression from fine and mixed ones is 3.0 mm off in
+    /// unseen frames, 12.4 in another's dances; from fine ones and frames 2.9 and 13.5; from all 2.9 and 12.2, from fine
+    /// ones alone 3.2 and 14.7.)
     pub fn pose(&self, number: usize, mixer: Option<&Mixer>) -> Option<Pose> {
-        let Some(mixer) = mixer else { return self.frames.get(number).cloned() };
-        let frame = (!number.is_multiple_of(2)).then(|| self.frames.get(number / 2).cloned()).flatten();
-        Some(frame.unwrap_or_else(|| mixer.pose(FIRST + number)))
+        match mixer {
+            Some(mixer) => Some(mixer.pose(FIRST + number)),
+            None => self.frames.get(number).cloned(),
+        }
     }
 
     /// How many poses there are.

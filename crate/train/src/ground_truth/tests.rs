@@ -192,7 +192,7 @@ fn mixed_poses_are_made_of_what_is_learned_from() {
 }
 
 #[test]
-fn coarse_poses_are_frames_and_mixtures_in_turn_and_want_a_model() {
+fn coarse_poses_are_mixtures_or_frames_and_want_a_model() {
     let (mut character, garment) = scene();
     let place = |frame: usize| vec![DAffine3::from_translation(DVec3::new(0.0, frame as f64, 0.0)); 2];
     character.clips = vec![Clip { name: "only".to_owned(), rate: 7.3, poses: (0..100).map(place).collect() }];
@@ -215,8 +215,8 @@ fn coarse_poses_are_frames_and_mixtures_in_turn_and_want_a_model() {
     let mixer = Mixer::new(&character, learned(&character), FURTHER);
     assert!(mixer.is_some());
     let (mixed, mixer) = (CoarsePoses::new(&learned(&character)), mixer.as_ref());
-    assert_eq!(hips(&mixed, mixer, &[1, 3, 161]), [all[0], all[1], all[80]], "frames");
-    assert!(mixed.pose(163, mixer).is_some() && mixed.pose(0, mixer) != mixed.pose(2, mixer), "made up");
+    assert_eq!(mixed.count(mixer), usize::MAX);
+    assert!(mixed.pose(163, mixer).is_some() && mixed.pose(0, mixer) != mixed.pose(1, mixer), "made up");
     let tasks = tasks(&Request { coarse: 6, ..request(&character, &garment) }, 2, Path::new(""));
     assert_eq!(tasks.iter().filter(|task| task.kind == Kind::Coarse).count(), 6);
     let folder = tempfile::tempdir().unwrap();

@@ -4,6 +4,7 @@ mod capstan;
 mod cusick;
 mod energy;
 mod fabric;
+mod fitted;
 mod friction;
 mod hostile;
 mod layers;

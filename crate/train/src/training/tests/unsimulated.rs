@@ -13,7 +13,7 @@ pub(super) fn scene() -> (HostModel, Setup, Vec<Sample>) {
     setup.description.parents = vec![None, Some(0), Some(1), Some(2), Some(1), Some(4)];
     let architecture = Architecture { embedding: 8, basis: 4, layers: 1, heads: 1, features: 4 };
     let mut model = initial(&setup, &samples.iter().collect::<Vec<_>>(), architecture, 1).unwrap();
-    model.body = Some(body(&setup, &samples.iter().collect::<Vec<_>>()).unwrap());
+    model.body = Some(body(&setup, &samples.iter().collect::<Vec<_>>(), &[]).unwrap());
     for sample in &mut samples {
         sample.truth = narrow(&model, &Item::posed(&model, &sample.joints).unwrap());
     }
