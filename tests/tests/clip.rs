@@ -23,7 +23,7 @@ fn model_and_clip() -> (HostModel, Vec<Vec<f32>>) {
     let samples: Vec<_> = samples.iter().collect();
     let architecture = train::Architecture { embedding: 3, basis: 3, layers: 1, heads: 1, features: 4 };
     let mut model = train::initial(&setup, &samples, architecture, 1).expect("a model");
-    model.body = Some(body::body(&setup, &samples).expect("a body"));
+    model.body = Some(body::body(&setup, &samples, &[]).expect("a body"));
     // As thick as the body under it: about half of the cloth is inside.
     for vertex in model.rest.as_chunks_mut::<3>().0 {
         (vertex[0], vertex[2]) = (0.9 * vertex[0], 0.9 * vertex[2]);

@@ -55,7 +55,7 @@ fn model(character: &Character, garment: &Garment, poses: &[Pose]) -> HostModel 
     model.skinning = Skinning { joints: vec![character.root as u32; n], weights: vec![1.0; n], width: 1 };
     model.skeleton_basis.fill(0.0);
     model.mesh_basis.fill(0.0);
-    model.body = Some(body(&setup, &samples).expect("a body"));
+    model.body = Some(body(&setup, &samples, &samples).expect("a body"));
     model
 }
 

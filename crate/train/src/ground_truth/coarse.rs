@@ -20,10 +20,10 @@ impl CoarsePoses {
         Self { frames }
     }
 
-    /// Pose number `number`; `None` where nothing can be mixed and the frames are used up. (Of a stranger's T-shirt 360
-    /// were frames and 350 mixed, beside 243 fine poses. Kernel regression from fine and mixed ones is 3.0 mm off in
-    /// unseen frames, 12.4 in another's dances; from fine ones and frames 2.9 and 13.5; from all 2.9 and 12.2, from fine
-    /// ones alone 3.2 and 14.7.)
+    /// Pose number `number`; `None` where nothing can be mixed and the frames are used up. (Beside 243 fine poses of a
+    /// stranger's T-shirt 350 mixed ones and 360 frames were simulated coarsely. Kernel regression from fine and mixed
+    /// ones is 3.0 mm off in unseen frames, 12.4 in another's dances; from fine ones and frames 2.9 and 13.5; from all
+    /// 2.9 and 12.2, from fine ones alone 3.2 and 14.7.)
     pub fn pose(&self, number: usize, mixer: Option<&Mixer>) -> Option<Pose> {
         match mixer {
             Some(mixer) => Some(mixer.pose(FIRST + number)),
