@@ -7,7 +7,7 @@ use glam::{DAffine3, DVec3};
 #[test]
 fn skin_is_lowered_under_cloth_that_lies_in_it_and_nowhere_else() {
     const GAP: f64 = 0.002;
-    // Cloth all around a ball of 204 mm, evenly spread: above, where the gap is kept over a ball of 200, below 40 mm off.
+    // Cloth all around a ball of 204 mm: above where the gap is kept over a ball of 200, below 40 mm off.
     let skin = rigid(sphere(0.204, 3)).body;
     let place = |i: usize| {
         let (y, angle) = (1.0 - 2.0 * (i as f64 + 0.5) / 4000.0, 2.4 * i as f64);
