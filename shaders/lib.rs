@@ -169,7 +169,7 @@ shaders! {
     POLISH: Polish, "polish" + ["diffuse.pull"], [Read Read Read Read Read Write Write Write], [64, 1];
     /// Offsets, neighbours, pulls -> pulls.
     DIFFUSE: Diffuse, "diffuse" + ["diffuse.pull"], [Read Read Read Write], [64, 1];
-    /// Offsets, neighbours, squares, positions -> pulls.
+    /// Offsets, neighbours, squares, positions, what each lacks to where the body is not met -> pulls.
     PULL: Pull, "pull" + [], [Read Read Read Read Read Write], [64, 1];
     /// Corners, coordinates, positions, normals -> riders.
     RIDE: Ride, "ride" + [], [Read Read Read Read Write], [64, 1];

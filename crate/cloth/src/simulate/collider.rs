@@ -77,13 +77,21 @@ impl Collider {
         PosedBody::new(self, self.body.pose(skinning))
     }
 
-    /// The body posed, every vertex raised along its normal by a share of its height, metres.
+    /// The body posed, every vertex raised along its normal by a share of its height, metres; lowered where that is
+    /// below zero.
     pub fn raised(&self, skinning: &[DAffine3], heights: &[f64], share: f64) -> PosedBody<'_> {
         let posed = self.pose(skinning);
-        match heights.iter().any(|height| *height > 0.0) {
+        match heights.iter().any(|height| *height != 0.0) {
             true => PosedBody::new(self, posed.offset(heights, share)),
             false => posed,
         }
+    }
+
+    /// The body itself in the canonical pose, every vertex raised so.
+    pub fn reshaped(self, heights: &[f64]) -> SkinnedMesh {
+        let positions = PosedBody::new(&self, self.body.mesh.positions.clone()).offset(heights, 1.0);
+        let SkinnedMesh { mesh, weights } = self.body;
+        SkinnedMesh { mesh: Mesh { positions, ..mesh }, weights }
     }
 
     /// Corners of a face.

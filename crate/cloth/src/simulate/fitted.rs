@@ -1,8 +1,7 @@
 //! The body's skin brought down to where simulated cloth lies on it.
 
 use super::collider::Collider;
-use super::posed::PosedBody;
-use ctsn_rig::{Mesh, SkinnedMesh};
+use ctsn_rig::SkinnedMesh;
 use glam::{DAffine3, DVec3};
 use rayon::prelude::*;
 
@@ -35,14 +34,12 @@ pub fn fitted(skin: SkinnedMesh, gap: f64, worn: &[(Vec<DAffine3>, Vec<DVec3>)])
             *height = (*height - STEP * lack).clamp(-NEAR, 0.0);
         }
     }
-    let positions = collider.pose(&vec![DAffine3::IDENTITY; joints]).offset(&heights, 1.0);
-    let SkinnedMesh { mesh, weights } = collider.body;
-    SkinnedMesh { mesh: Mesh { positions, ..mesh }, weights }
+    collider.reshaped(&heights)
 }
 
 /// What cloth on the skin lacks to the gap, by the vertices of the skin that it lies on.
 fn lacks(collider: &Collider, heights: &[f64], skinning: &[DAffine3], cloth: &[DVec3], gap: f64) -> Vec<(u32, f64)> {
-    let posed = PosedBody::new(collider, collider.pose(skinning).offset(heights, 1.0));
+    let posed = collider.raised(skinning, heights, 1.0);
     let lack = |vertex: &DVec3| {
         let hit = posed.closest(*vertex, None, NEAR)?;
         let corners = collider.face(hit.face).into_iter().zip(hit.barycentric);

@@ -64,9 +64,7 @@ pub fn covering(skin: SkinnedMesh, character: &Character, poses: &[Vec<DAffine3>
     let highest = HIGHEST * mean_edge(&skin.mesh);
     let raised: Vec<f64> =
         heights(&canonical).iter().zip(posed).map(|(own, posed)| own.max(posed.min(highest))).collect();
-    let positions = collider.pose(&canonical).offset(&raised, 1.0);
-    let SkinnedMesh { mesh, weights } = collider.body;
-    SkinnedMesh { mesh: Mesh { positions, ..mesh }, weights }
+    collider.reshaped(&raised)
 }
 
 /// Mean edge length of a mesh, metres.

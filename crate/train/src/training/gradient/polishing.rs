@@ -55,11 +55,11 @@ pub fn forward(cpu: &mut Cpu, cut: &Cut, from: &[f32], trail: &mut [f32], polish
     polished.copy_from_slice(from);
     for (k, start) in trail.chunks_exact_mut(from.len()).enumerate() {
         start.copy_from_slice(polished);
-        // Nothing is near, so which way the cloth faces does not matter either.
         let pull = Pull { offsets, neighbours, squares, positions: &*start, near: &near[..], pulls: &mut pulls[..] };
         cpu.compute(pull);
         cpu.compute(Diffuse { offsets, neighbours, pulls: &pulls[..], diffused: &mut diffused[..] });
         let (share, pulls, moves) = (&[1.0][..], &diffused[..], &mut moves[..]);
+        // Nothing is near, so which way the cloth faces does not matter.
         let (first, facing, near, positions) = (k == 0, &*start, &mut near[..], &mut *polished);
         cpu.compute(Polish { offsets, neighbours, share, first, facing, pulls, moves, near, positions });
     }
