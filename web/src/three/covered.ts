@@ -2,7 +2,7 @@ import { Vector3, type BufferAttribute, type Material, type Matrix4, type Skinne
 import { Cells } from './cells.js';
 import type { Cloth } from './cloth.js';
 import type { AnyClothModel } from './options.js';
-import { edgesOf, restOf, trained } from './rest.js';
+import { edgesOf, restOf, trained, withinHems } from './rest.js';
 
 /** Cloth so far before the skin still covers it, metres: loose trousers have as much room. */
 const REACH = 0.08;
@@ -23,7 +23,9 @@ export async function coveredSkin({ model, bones }: Cloth<Material, AnyClothMode
   const toModel = bindSpace(model, bones, mesh);
   if (!toModel || !normal) return covered;
   const { positions } = await restOf(model);
-  const inside = insideOf(model, positions);
+  const inside = withinHems(edgesOf(model), positions, MARGIN);
+  // A mesh without a rim is a shell around the cloth's edges, too: nothing says where those are.
+  if (!inside.includes(0)) inside.fill(0);
   const cloth = new Cells(REACH);
   const bare = new Cells(MARGIN);
   const [at, out, way] = [new Vector3(), new Vector3(), new Vector3()];
@@ -48,26 +50,4 @@ function bindSpace(model: AnyClothModel, bones: Cloth['bones'], mesh: SkinnedMes
   if (joint < 0) return undefined;
   const inverse = boneInverses[(bound as unknown[]).indexOf(bones[joint])]!;
   return trained(model, joint).invert().multiply(inverse).multiply(mesh.bindMatrix);
-}
-
-/** How far each vertex of the cloth is from its nearest hem, along edges [n]; metres. */
-function insideOf(model: AnyClothModel, rest: Float32Array): Float32Array {
-  const inside = new Float32Array(model.vertexCount).fill(Infinity);
-  const all = edgesOf(model).map(({ a, b, hem }) => {
-    if (hem) inside[a] = inside[b] = 0;
-    return { a, b, far: Math.hypot(...[0, 1, 2].map((axis) => rest[3 * a + axis]! - rest[3 * b + axis]!)) };
-  });
-  // A mesh without a rim is a shell around the cloth's edges, too: nothing says where those are.
-  if (!inside.includes(0)) inside.fill(0);
-  for (let changed = true; changed; ) {
-    changed = false;
-    for (const { a, b, far } of all) {
-      const [near, other] = inside[a]! < inside[b]! ? [a, b] : [b, a];
-      // Beyond the margin it matters no more how far.
-      if (inside[near]! > MARGIN || !(inside[near]! + far < inside[other]! - 1e-6)) continue;
-      inside[other] = inside[near]! + far;
-      changed = true;
-    }
-  }
-  return inside;
 }

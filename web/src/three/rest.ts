@@ -41,3 +41,22 @@ export function edgesOf({ triangles, vertexCount }: AnyClothModel): Edge[] {
   }
   return [...sides].map(([key, count]) => ({ a: Math.floor(key / vertexCount), b: key % vertexCount, hem: count === 1 }));
 }
+
+/** How far each vertex of the cloth, `rest` [3·n], is from its nearest hem, along edges [n], metres; not told beyond `most`. */
+export function withinHems(edges: readonly Edge[], rest: Float32Array, most: number): Float32Array {
+  const inside = new Float32Array(rest.length / 3).fill(Infinity);
+  const all = edges.map(({ a, b, hem }) => {
+    if (hem) inside[a] = inside[b] = 0;
+    return { a, b, far: Math.hypot(...[0, 1, 2].map((axis) => rest[3 * a + axis]! - rest[3 * b + axis]!)) };
+  });
+  for (let changed = true; changed; ) {
+    changed = false;
+    for (const { a, b, far } of all) {
+      const [near, other] = inside[a]! < inside[b]! ? [a, b] : [b, a];
+      if (inside[near]! > most || !(inside[near]! + far < inside[other]! - 1e-6)) continue;
+      inside[other] = inside[near]! + far;
+      changed = true;
+    }
+  }
+  return inside;
+}

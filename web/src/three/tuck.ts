@@ -1,19 +1,23 @@
 import { Vector3, type BufferAttribute } from 'three';
 import { Cells } from './cells.js';
 import type { Garment } from './garment.js';
-import { edgesOf } from './rest.js';
+import { edgesOf, withinHems } from './rest.js';
 
 /** Cloth so near to other cloth in the bind pose may come through it, metres. */
 const REACH = 0.1;
-/** So far under the outer cloth the inner one is put: the faces between the vertices of either are not even. */
+/**
+ * So far under the outer cloth the inner one is put, for the faces between the vertices of either are not even. At the
+ * hem it is not, since a tight hem is as near to the body: there the body came through what it had been put into. The
+ * outer is drawn nearer as well.
+ */
 const GAP = 0.006;
 /**
  * What stands out by more than the first is put back less, from the second on not at all: it is not under that cloth,
  * such as a leg in front of a shirt, or the body itself comes through that.
  */
 const [DEEP, FAR] = [0.05, 0.08];
-/** Inner cloth that comes from under a hem is free after so many metres. */
-const HEM = 0.04;
+/** Inner cloth has that gap so many metres within a hem, and is free as many metres beyond it. (Half as many: a shoulder.) */
+const HEM = 0.08;
 
 /**
  * Two garments, one over the other, of which neither knows: keeps the inner one under the outer one, on the arrays that
@@ -61,19 +65,19 @@ class Sheet {
   /** Neighbours of vertex i: from first[i] to first[i + 1]. */
   readonly #first: Uint32Array;
   readonly #neighbours: Uint32Array;
-  readonly #hem: Uint8Array;
+  /** Gap under each vertex, metres; none at the hem. */
+  readonly #gap: Float32Array;
   /** One of the vertices that are drawn, for each of the cloth. */
   readonly #drawn: Uint32Array;
 
-  constructor({ cloth: { model } }: Garment) {
+  constructor({ cloth: { model }, rest }: Garment) {
     const edges = edgesOf(model);
     const all = Array.from({ length: model.vertexCount }, (): number[] => []);
-    this.#hem = new Uint8Array(model.vertexCount);
-    for (const { a, b, hem } of edges) {
+    for (const { a, b } of edges) {
       all[a]!.push(b);
       all[b]!.push(a);
-      if (hem) this.#hem[a] = this.#hem[b] = 1;
     }
+    this.#gap = withinHems(edges, rest.positions, HEM).map((within) => GAP * Math.min(within / HEM, 1));
     this.#neighbours = Uint32Array.from(all.flat());
     this.#first = new Uint32Array(model.vertexCount + 1);
     all.forEach((list, vertex) => (this.#first[vertex + 1] = this.#first[vertex]! + list.length));
@@ -99,9 +103,10 @@ class Sheet {
     const at = 3 * this.#drawn[near]!;
     const [u, v, w] = [normal[at]!, normal[at + 1]!, normal[at + 2]!];
     const out = (x - from[at]!) * u + (y - from[at + 1]!) * v + (z - from[at + 2]!) * w;
-    if (!(out > -GAP && out < FAR)) return near;
-    const beside = this.#hem[near] === 1 ? Math.sqrt(Math.max(least - out * out, 0)) : 0;
-    const by = share * (out + GAP) * Math.max(1 - beside / HEM, 0) * Math.min((FAR - out) / (FAR - DEEP), 1);
+    const gap = this.#gap[near]!;
+    if (!(out > -gap && out < FAR)) return near;
+    const beside = gap === 0 ? Math.sqrt(Math.max(least - out * out, 0)) : 0;
+    const by = share * (out + gap) * Math.max(1 - beside / HEM, 0) ** 2 * Math.min((FAR - out) / (FAR - DEEP), 1);
     to[i] = x - by * u;
     to[i + 1] = y - by * v;
     to[i + 2] = z - by * w;
