@@ -16,7 +16,7 @@ const GAP = 0.006;
  * such as a leg in front of a shirt, or the body itself comes through that.
  */
 const [DEEP, FAR] = [0.05, 0.08];
-/** Inner cloth has that gap so many metres within a hem, and is free as many metres beyond it. (Half as many: a shoulder.) */
+/** Inner cloth has that gap so many metres within a hem, and is free as many beyond it. (Half as many: a shoulder.) */
 const HEM = 0.08;
 
 /**
