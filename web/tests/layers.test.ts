@@ -33,7 +33,7 @@ function pass(wardrobe: Wardrobe<Name>, seconds: number) {
   ) as Partial<Drawn> as Drawn;
 }
 
-/** By how much vertices of one are under those of another, millimetres: the least, which is at the hem, and the most. */
+/** By how much vertices of one are under those of another, millimetres: the least, at the hem, and the most. */
 function under(inner: { position: ArrayLike<number> }, outer: { position: ArrayLike<number>; normal: ArrayLike<number> }) {
   const deep = Array.from({ length: outer.position.length / 3 }, (_, vertex) =>
     [0, 1, 2].map((axis) => 3 * vertex + axis).reduce((sum, i) => sum + (outer.position[i]! - inner.position[i]!) * outer.normal[i]!, 0),

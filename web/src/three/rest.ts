@@ -42,7 +42,7 @@ export function edgesOf({ triangles, vertexCount }: AnyClothModel): Edge[] {
   return [...sides].map(([key, count]) => ({ a: Math.floor(key / vertexCount), b: key % vertexCount, hem: count === 1 }));
 }
 
-/** How far each vertex of cloth (`rest` [3·n]) is from its nearest hem, along edges [n]; metres, not told beyond `most`. */
+/** How far each vertex of cloth (`rest` [3·n]) is from its nearest hem, along edges [n]: metres, up to about `most`. */
 export function withinHems(edges: readonly Edge[], rest: Float32Array, most: number): Float32Array {
   const inside = new Float32Array(rest.length / 3).fill(Infinity);
   const all = edges.map(({ a, b, hem }) => {
