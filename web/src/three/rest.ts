@@ -45,18 +45,24 @@ export function edgesOf({ triangles, vertexCount }: AnyClothModel): Edge[] {
 /** How far each vertex of cloth (`rest` [3·n]) is from its nearest hem, along edges [n]: metres, up to about `most`. */
 export function withinHems(edges: readonly Edge[], rest: Float32Array, most: number): Float32Array {
   const inside = new Float32Array(rest.length / 3).fill(Infinity);
-  const all = edges.map(({ a, b, hem }) => {
+  const lengths = Float32Array.from(edges, ({ a, b, hem }) => {
     if (hem) inside[a] = inside[b] = 0;
-    return { a, b, far: Math.hypot(...[0, 1, 2].map((axis) => rest[3 * a + axis]! - rest[3 * b + axis]!)) };
+    const [x, y, z] = [rest[3 * a]! - rest[3 * b]!, rest[3 * a + 1]! - rest[3 * b + 1]!, rest[3 * a + 2]! - rest[3 * b + 2]!];
+    return Math.sqrt(x * x + y * y + z * z);
   });
-  for (let changed = true; changed; ) {
+  // On every change of clothes, with code that is not yet compiled: nothing is allocated.
+  let changed = true;
+  const reach = (from: number, to: number, far: number) => {
+    if (inside[from]! > most || !(inside[from]! + far < inside[to]! - 1e-6)) return;
+    inside[to] = inside[from]! + far;
+    changed = true;
+  };
+  while (changed) {
     changed = false;
-    for (const { a, b, far } of all) {
-      const [near, other] = inside[a]! < inside[b]! ? [a, b] : [b, a];
-      if (inside[near]! > most || !(inside[near]! + far < inside[other]! - 1e-6)) continue;
-      inside[other] = inside[near]! + far;
-      changed = true;
-    }
+    edges.forEach(({ a, b }, edge) => {
+      reach(a, b, lengths[edge]!);
+      reach(b, a, lengths[edge]!);
+    });
   }
   return inside;
 }
