@@ -48,6 +48,16 @@ fn inspect_and_predict_agree_with_the_golden_file() {
 }
 
 #[test]
+fn inspect_tells_what_a_character_is() {
+    let folder = Folder::new();
+    write_character(&folder, |character| character.joints[1].name = "Breast".to_owned());
+    let shown = folder.accepts("inspect character.glb");
+    for part in ["98 vertices, 192 triangles, 1.20 m", "2, root Hips: Hips, Breast", "1\n    turn", " 0.2 s"] {
+        assert!(shown.contains(part), "wanted {part:?} in {shown}");
+    }
+}
+
+#[test]
 fn models_that_are_none_are_refused() {
     let folder = Folder::new();
     let mut lying = Tensors::parse(TINY).expect("golden model");

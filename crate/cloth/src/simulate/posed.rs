@@ -134,7 +134,9 @@ impl<'a> PosedBody<'a> {
     /// Whether a point is inside the body, by the solid angle of its faces (generalised winding number, Jacobson et al.
     /// 2013): behind the nearest face may be outside, where shells are open or folded.
     pub fn encloses(&self, point: DVec3) -> bool {
-        let angle = |face: &[u32; 3]| triangle::solid_angle(point, face.map(|i| self.positions[i as usize]));
+        // A corner is that of six faces.
+        let towards: Vec<DVec3> = self.positions.iter().map(|corner| (*corner - point).normalize_or_zero()).collect();
+        let angle = |face: &[u32; 3]| triangle::solid_angle_between(face.map(|i| towards[i as usize]));
         self.collider.body.mesh.triangles.iter().map(angle).sum::<f64>() > TAU
     }
 

@@ -66,8 +66,8 @@ const MIXED: usize = 2;
 /// Frames for each mixed pose of a garment that is fine: there half of them are left out, and one that is kept takes
 /// four times as long as a frame (a dress of 2,996 vertices: 20 and 5 s of a core; coarse 1.8 s).
 const FRAMES_A_MIXED: usize = 2;
-/// Coarse poses for each frame of such a garment.
-const COARSE: usize = 4;
+/// Coarse poses for each frame of such a garment, half as long as the frame and its mixed poses together.
+const COARSE: usize = 10;
 /// Poses by which the time of one is measured.
 const TIMED: usize = 6;
 

@@ -1,4 +1,4 @@
-//! `ctsn inspect`: what is in a model file or a dataset folder.
+//! `ctsn inspect`: what is in a model file, a dataset folder, or a character.
 
 use super::ordered;
 use anyhow::{Context, Result, bail};
@@ -16,11 +16,14 @@ use std::path::{Path, PathBuf};
 
 /// Poses a second that are predicted of a character's clips.
 const RATE: f64 = 6.0;
+/// Poses a second that the lengths of clips are told by.
+const FINE_RATE: f64 = 30.0;
 
-/// Show what is in a model (sizes, tensors, bytes, joints, training), or the report of a dataset
+/// Show what is in a model (sizes, tensors, bytes, joints, training), the report of a dataset, or the body, joints and
+/// clips of a character
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// Model file (safetensors), or dataset folder
+    /// Model file (safetensors), dataset folder, or character (glTF)
     path: PathBuf,
     /// Tell instead how much of a model's cloth is inside its character (glTF) in every clip, before the repair and
     /// after
@@ -37,6 +40,9 @@ pub fn run(Arguments { path, on }: &Arguments) -> Result<()> {
         return Ok(());
     }
     let bytes = file::read(path)?;
+    if bytes.starts_with(b"glTF") || path.extension().is_some_and(|ending| ending == "gltf") {
+        return rigged(path);
+    }
     let context = || path.display().to_string();
     let tensors = Tensors::parse(&bytes).with_context(context)?;
     let model = HostModel::parse(&bytes).with_context(context)?;
@@ -58,6 +64,26 @@ pub fn run(Arguments { path, on }: &Arguments) -> Result<()> {
     for (name, tensor) in &tensors.tensors {
         let shape = format!("{:?}", tensor.shape);
         println!("    {name:<24} {:<4} {shape:<16} {:>10} bytes", tensor.dtype.name(), tensor.bytes.len());
+    }
+    Ok(())
+}
+
+/// Prints a character's size, joints and clips.
+fn rigged(path: &Path) -> Result<()> {
+    let character = gltf::read_character(path, FINE_RATE)?;
+    let mesh = &character.body.mesh;
+    println!("{}: a character", path.display());
+    println!(
+        "  body       {} vertices, {} triangles, {:.2} m at its greatest extent",
+        mesh.positions.len(),
+        mesh.triangles.len(),
+        mesh.extent()
+    );
+    let names: Vec<&str> = character.joints.iter().map(|joint| joint.name.as_str()).collect();
+    println!("  joints     {}, root {}: {}", names.len(), names[character.root], names.join(", "));
+    println!("  clips      {}", character.clips.len());
+    for clip in &character.clips {
+        println!("    {:<24} {:.1} s", clip.name, clip.poses.len().saturating_sub(1) as f64 / clip.rate);
     }
     Ok(())
 }

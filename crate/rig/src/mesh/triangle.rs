@@ -109,6 +109,10 @@ pub fn meet(origin: DVec3, direction: DVec3, [a, b, c]: [DVec3; 3]) -> Option<Me
 /// Solid angle seen from `p`, steradians, positive from behind: over a closed surface 4π inside and 0 outside (van
 /// Oosterom & Strackee 1983).
 pub fn solid_angle(p: DVec3, corners: [DVec3; 3]) -> f64 {
-    let [a, b, c] = corners.map(|corner| (corner - p).normalize_or_zero());
+    solid_angle_between(corners.map(|corner| (corner - p).normalize_or_zero()))
+}
+
+/// The same of the unit vectors towards the corners.
+pub fn solid_angle_between([a, b, c]: [DVec3; 3]) -> f64 {
     2.0 * a.dot(b.cross(c)).atan2(1.0 + a.dot(b) + b.dot(c) + c.dot(a))
 }
