@@ -2,6 +2,7 @@
 
 use glam::{DAffine3, DVec3};
 
+use super::coarse::Coarse;
 use super::level::Level;
 use super::newton::Solver;
 use super::outcome::{Outcome, Status};
@@ -30,7 +31,8 @@ impl Simulator {
     /// and what did not in 400 was left out after all. A fine garment begins where its thinned form comes to rest:
     /// layers of a prediction that are jammed part there, in a fifth of the time.
     pub fn try_relax(&self, template: &[DVec3], pose: &Pose, start: &[DVec3]) -> Outcome {
-        let coarse = self.relax_coarse(template, pose, start).filter(Outcome::converged);
+        let coarse = self.coarse.as_ref().map(|thinned| self.relax_as(thinned, template, pose, start));
+        let coarse = coarse.filter(Outcome::converged);
         let start = coarse.as_ref().map_or(start, |coarse| &coarse.positions);
         self.relax_for(template, pose, start, TRIED.min(self.settings.relax_iterations))
     }
@@ -43,12 +45,15 @@ impl Simulator {
         self.settle(solver, &body, iterations, 1, pose, DAffine3::IDENTITY)
     }
 
-    /// The same on the thinned garment as which a fine one travels, the fine one laid on what comes of it: a sixth of
-    /// the time, and where the cloth lies without its fine folds. `None` for a garment that is not fine.
+    /// The same on a garment that is thinned much, the fine one laid on what comes of it: a sixth of the time, and where
+    /// the cloth lies without its fine folds. `None` for a garment that is not fine.
     pub fn relax_coarse(&self, template: &[DVec3], pose: &Pose, start: &[DVec3]) -> Option<Outcome> {
-        let (coarse, level) = self.coarse.as_ref()?;
+        Some(self.relax_as(self.coarser.as_ref()?, template, pose, start))
+    }
+
+    fn relax_as(&self, (coarse, level): &(Coarse, Level), template: &[DVec3], pose: &Pose, start: &[DVec3]) -> Outcome {
         if let Err(reason) = self.check_start(template, pose, start) {
-            return Some(self.refuse(reason));
+            return self.refuse(reason);
         }
         let (mut solver, body) = self.begin(level, &coarse.restrict(template), coarse.restrict(start), pose);
         let relaxed = solver.relax(Some(&body), self.settings.relax_iterations);
@@ -64,7 +69,7 @@ impl Simulator {
         if let Some(reason) = self.unrest(&outcome).or_else(astray) {
             outcome.status = Status::Rejected { reason };
         }
-        Some(outcome)
+        outcome
     }
 
     /// Why `pose` cannot be relaxed from there.

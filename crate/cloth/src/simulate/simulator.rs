@@ -3,7 +3,7 @@
 
 use glam::{DAffine3, DVec3};
 
-use super::coarse::Coarse;
+use super::coarse::{COARSE, COARSER, Coarse};
 use super::collider::Collider;
 use super::cover::{Cover, SLACK};
 use super::distance::BodyDistance;
@@ -30,6 +30,8 @@ pub struct Simulator {
     pub(super) level: Level,
     /// What a fine garment travels as.
     pub(super) coarse: Option<(Coarse, Level)>,
+    /// What is relaxed of a fine garment for its coarse poses.
+    pub(super) coarser: Option<(Coarse, Level)>,
     /// The body's outer skin, which the cloth touches.
     pub(super) collider: Collider,
     /// The body itself, which no kept pose may enter.
@@ -55,14 +57,15 @@ impl Simulator {
         };
         let warp = warp(garment);
         let fine = level(&garment.mesh, &warp, &settings.attached)?;
-        let coarse = fine.cloth.is_fine().then(|| Coarse::new(&garment.mesh, &warp));
-        let coarse = coarse.map(|coarse| {
+        let thinned = |vertices| {
+            let coarse = Coarse::new(&garment.mesh, &warp, vertices);
             let level = level(&coarse.embedding.mesh, &coarse.warp, &coarse.restrict_vertices(&settings.attached))?;
             Ok::<_, Error>((coarse, level))
-        });
-        let coarse = coarse.transpose()?;
+        };
+        let of = |vertices| fine.cloth.is_fine().then(|| thinned(vertices)).transpose();
+        let [coarse, coarser] = [of(COARSE)?, of(COARSER)?];
         let character = Character { clips: Vec::new(), surface: Surface::default(), ..character.clone() };
-        Ok(Self { character, rest, level: fine, coarse, collider, body, cover, settings })
+        Ok(Self { character, rest, level: fine, coarse, coarser, collider, body, cover, settings })
     }
 
     /// Whether the garment has so many vertices that it travels thinned.

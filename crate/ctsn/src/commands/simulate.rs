@@ -65,7 +65,7 @@ pub struct Options {
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub mixed: usize,
     /// Simulate this many poses coarsely as well, mixed ones where there are limbs to mix, else frames: a garment of
-    /// more than 2,500 vertices thinned to 1,500, and itself laid on that, in a fraction of the time. The skeleton
+    /// more than 2,500 vertices thinned to 700, and itself laid on that, in a fraction of the time. The skeleton
     /// stream learns from them. Wants --from
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub coarse: usize,

@@ -11,8 +11,11 @@ use glam::DVec3;
 pub use self::embedding::Embedding;
 use self::thin::{Thinned, thin};
 
-/// Vertices of the coarse garment.
-const COARSE: usize = 1500;
+/// Vertices of what a fine garment travels as.
+pub const COARSE: usize = 1500;
+/// Vertices of what is relaxed for coarse poses. With 350 two thirds of the time are spent on other things, and one pose
+/// of 14 has too much cloth inside the body between them: docs/decisions/poses.md.
+pub const COARSER: usize = 700;
 
 /// A thinned garment and how the fine one lies on it.
 pub(super) struct Coarse {
@@ -24,9 +27,9 @@ pub(super) struct Coarse {
 }
 
 impl Coarse {
-    /// Of a fine garment at rest with the direction of the warp per triangle.
-    pub fn new(fine: &Mesh, warp: &[DVec3]) -> Self {
-        let Thinned { mesh, kept, into } = thin(fine, COARSE);
+    /// Of so many vertices of a fine garment at rest with the direction of the warp per triangle.
+    pub fn new(fine: &Mesh, warp: &[DVec3], vertices: usize) -> Self {
+        let Thinned { mesh, kept, into } = thin(fine, vertices);
         let rings = mesh.rings();
         let mut fans = vec![Vec::new(); kept.len()];
         for (index, triangle) in mesh.triangles.iter().enumerate() {
@@ -85,7 +88,7 @@ mod tests {
     #[test]
     fn a_fine_cloth_goes_where_its_coarse_one_goes() {
         let fine = skirt(96, 30);
-        let coarse = Coarse::new(&fine, &vec![DVec3::Y; fine.triangles.len()]);
+        let coarse = Coarse::new(&fine, &vec![DVec3::Y; fine.triangles.len()], COARSE);
         assert!(coarse.embedding.mesh.positions.len() <= COARSE && coarse.warp.iter().all(|warp| *warp == DVec3::Y));
         let turn = DAffine3::from_rotation_translation(DQuat::from_rotation_x(2.0), DVec3::new(1.0, -2.0, 0.5));
         let moved = |x: &[DVec3]| x.iter().map(|p| turn.transform_point3(*p)).collect::<Vec<_>>();

@@ -36,7 +36,7 @@ fn from_a_start_near_it_a_pose_comes_to_the_same_rest() {
     }
 }
 
-/// 2,976 vertices, relaxed as 1,500.
+/// 2,976 vertices, relaxed as 700.
 #[test]
 fn a_fine_skirt_is_laid_where_its_coarse_one_comes_to_rest() {
     let character = legs();
