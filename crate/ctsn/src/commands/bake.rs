@@ -64,9 +64,10 @@ const FEWEST: usize = 60;
 /// third of them mixed E_dist was 17.5 mm, with two thirds, turned further, 12.6 mm (docs/decisions/poses.md).
 const MIXED: usize = 2;
 /// Frames for each mixed pose of a garment that is fine: there half of them are left out, and one that is kept takes
-/// four times as long as a frame (a dress of 2,996 vertices: 20 and 5 s of a core; coarse 1.8 s).
+/// four times as long as a frame (a dress of 2,996 vertices: 20 and 5 s of a core).
 const FRAMES_A_MIXED: usize = 2;
-/// Coarse poses for each frame of such a garment, half as long as the frame and its mixed poses together.
+/// Coarse poses for each frame of such a garment: they take as long as the mixed ones (1 s of a core each), and teach
+/// more of motion that no clip has (docs/decisions/poses.md).
 const COARSE: usize = 10;
 /// Poses by which the time of one is measured.
 const TIMED: usize = 6;
