@@ -13,8 +13,8 @@ use self::thin::{Thinned, thin};
 
 /// Vertices of what a fine garment travels as.
 pub const COARSE: usize = 1500;
-/// Vertices of what is relaxed for coarse poses. With 350 two thirds of the time are spent on other things, and more
-/// poses have too much cloth inside the body between them: docs/decisions/poses.md.
+/// Vertices of what is relaxed for coarse poses. With 350 a third of the time went into what is inside the body, and
+/// more poses had too much cloth there, between them: docs/decisions/poses.md.
 pub const COARSER: usize = 700;
 
 /// A thinned garment and how the fine one lies on it.
