@@ -45,12 +45,13 @@ impl Simulator {
         self.settle(solver, &body, iterations, 1, pose, DAffine3::IDENTITY)
     }
 
-    /// The same on a garment that is thinned much, the fine one laid on what comes of it: in a tenth of the time, where
-    /// the cloth lies without its fine folds. `None` for a garment that is not fine.
+    /// The same on a garment that is thinned much, in a fraction of the time: where the cloth lies without its fine
+    /// folds. `None` for a garment that is not fine.
     pub fn relax_coarse(&self, template: &[DVec3], pose: &Pose, start: &[DVec3]) -> Option<Outcome> {
         Some(self.relax_as(self.coarser.as_ref()?, template, pose, start))
     }
 
+    /// The same as a thinned garment, the fine one laid on what comes of it.
     fn relax_as(&self, (coarse, level): &(Coarse, Level), template: &[DVec3], pose: &Pose, start: &[DVec3]) -> Outcome {
         if let Err(reason) = self.check_start(template, pose, start) {
             return self.refuse(reason);

@@ -66,8 +66,8 @@ const MIXED: usize = 2;
 /// Frames for each mixed pose of a garment that is fine: there half of them are left out, and one that is kept takes
 /// four times as long as a frame (a dress of 2,996 vertices: 20 and 5 s of a core).
 const FRAMES_A_MIXED: usize = 2;
-/// Coarse poses for each frame of such a garment: they take as long as the mixed ones (1 s of a core each), and teach
-/// more of motion that no clip has (docs/decisions/poses.md).
+/// Coarse poses for each frame of such a garment, a second of a core each: ten take about as long as the mixed pose for
+/// every other frame, and teach more of motion that no clip has (docs/decisions/poses.md).
 const COARSE: usize = 10;
 /// Poses by which the time of one is measured.
 const TIMED: usize = 6;
