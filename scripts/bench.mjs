@@ -13,7 +13,7 @@ import { demo, measureDial } from './dial.mjs';
 import { buildLibrary } from './library.mjs';
 import { measureModels } from './cast.mjs';
 import { inPage, withServer } from './page.mjs';
-import { comparePeers, PAPER, withoutBody } from './peers.mjs';
+import { comparePeers, PAPER, networkAlone } from './peers.mjs';
 import { at, main, need, say } from './step.mjs';
 import { build } from './tryon.mjs';
 import { measureVisits } from './visit.mjs';
@@ -75,7 +75,7 @@ async function prepareCases(ctsn, folder) {
   const file = (name) => path.join(folder, name);
   mkdirSync(folder, { recursive: true });
   await need(ctsn, ['bench', '--write-model', file('bench.safetensors')]);
-  withoutBody(file('bench.safetensors'), file('bare.safetensors'));
+  networkAlone(file('bench.safetensors'), file('bare.safetensors'));
   writeFileSync(file('chain.bin'), chain());
   copyFileSync(at('tests', 'data', 'tshirt.safetensors'), file('demo.safetensors'));
   const { model, poses } = await demo();

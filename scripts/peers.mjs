@@ -47,19 +47,19 @@ function writeTensors(file, header, data) {
   writeFileSync(file, Buffer.concat([length, text, data]));
 }
 
-/** Takes the body out of a model file, so that nothing is repaired: `to` may be the same file. */
-export function withoutBody(from, to) {
+/** Takes body and lengths out of a model file, so that nothing is polished or repaired: `to` may be the same file. */
+export function networkAlone(from, to) {
   const bytes = readFileSync(from);
   const length = Number(bytes.readBigUInt64LE());
   const header = Object.entries(JSON.parse(bytes.toString('utf8', 8, 8 + length)));
-  writeTensors(to, Object.fromEntries(header.filter(([name]) => !name.startsWith('body.'))), bytes.subarray(8 + length));
+  writeTensors(to, Object.fromEntries(header.filter(([name]) => !/^(body\.|cloth\.cut$)/.test(name))), bytes.subarray(8 + length));
 }
 
-/** The files of a size: made-up cloth without a body, since the exported network has no repair, and its export. */
+/** The files of a size: made-up cloth, the network alone, as what is exported neither polishes nor repairs; its export. */
 async function prepare(ctsn, index) {
   const file = (ending) => path.join(folder, `${index}.${ending}`);
   await need(ctsn, ['bench', ...sizes[index].flags, '--write-model', file('safetensors')]);
-  withoutBody(file('safetensors'), file('safetensors'));
+  networkAlone(file('safetensors'), file('safetensors'));
   await need(ctsn, ['export', file('safetensors'), '-o', file('onnx')]);
 }
 

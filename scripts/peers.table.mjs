@@ -39,7 +39,7 @@ export async function write(tables, { rounds, predictions, version }) {
   const web = JSON.parse(readFileSync(at('node_modules', 'onnxruntime-web', 'package.json'), 'utf8')).version;
   const commit = (await need('git', ['rev-parse', '--short', 'HEAD'], { capture: true })).trim();
   const about = `\`npm run bench -- --peers\`, ${new Date().toISOString().slice(0, 10)}, commit ${commit}; onnxruntime ${version}, onnxruntime-web ${web}.
-Made-up cloth, 65 joints, without a body: no engine repairs penetration. onnxruntime runs what \`ctsn export\` writes. PyTorch is not here.
+Made-up cloth, 65 joints, without a body and without lengths to keep: no engine polishes, none repairs penetration. onnxruntime runs what \`ctsn export\` writes. PyTorch is not here.
 Medians of ${rounds} rounds of ${predictions} predictions (least and greatest round); in every round each engine is started anew, in turn.
 **Times ours**: median over the rounds of the quotient to ctsn in the same place, with as many threads. **To the first**: from nothing loaded to the first prediction; in Chromium with download from this machine.
 **Memory**: of the whole process, Python included; in Chromium of WebAssembly alone. **Difference**: largest of any coordinate to the first row.`;

@@ -1,11 +1,13 @@
 // The demo site, built and served, in headless Chromium: it moves, agrees with the native prediction, and complains
 // about nothing.
+import { readFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 import { afterAll, afterEach, beforeAll, expect, test } from 'vitest';
 import type { Quality } from 'ctsn';
+import { adorn } from './glb.js';
 import { predictNatively } from './native.js';
 import type { Demo } from '../../www/src/hook.js';
-import { ask, out, Site } from './page.js';
+import { announcements, ask, out, Site } from './page.js';
 import { difference, shareBeyond } from './safetensors.js';
 import tolerances from './tolerances.json' with { type: 'json' };
 
@@ -27,6 +29,7 @@ test('the page plays, goes on predicting, and rests when nothing moves', async (
   expect(await ask(page, (demo) => demo.milliseconds, null)).toBeGreaterThan(0);
   await open(page, 'Cost');
   await expect.poll(() => page.textContent('#milliseconds'), patience).toMatch(/^\d+\.\d+ ms$/);
+  expect(await announcements(page), 'what changes in every frame is not read out').toEqual([]);
   await page.getByRole('button', { name: 'Pause' }).click();
   expect(await page.getByRole('button', { name: 'Play' }).isVisible()).toBe(true);
   const frozen = await page.textContent('#clock');
@@ -107,6 +110,27 @@ test('the three sources of the cloth differ on the page, and are seen side by si
   expect(complaints).toEqual([]);
 });
 
+test('beside a map the rival wears its fabric', async () => {
+  const { page, complaints } = await site.visit('?pose=dance:40');
+  await ask(page, (demo) => demo.finished(), null);
+  await open(page, 'Compare');
+  await page.getByLabel('with plain skinning').check({ force: true });
+  await expect.poll(() => page.getByText('Plain skinning', { exact: true }).isVisible(), patience).toBe(true);
+  await page.getByLabel('Where the network').fill('0.3');
+  /** The figure, without what the panel's shadow falls on: it is all on the rival's side of the line. */
+  const side = async () => {
+    await page.waitForTimeout(500);
+    return page.screenshot({ clip: { x: 320, y: 60, width: 260, height: 440 } });
+  };
+  const fabric = await side();
+  await open(page, 'Maps');
+  await page.getByRole('radio', { name: 'Stretch' }).check({ force: true });
+  expect((await side()).equals(fabric)).toBe(true);
+  await page.getByLabel('Where the network').fill('0.7');
+  expect((await side()).equals(fabric), 'the other side has the map').toBe(false);
+  expect(complaints).toEqual([]);
+});
+
 test('maps tell of fit, stretch and confidence, with a legend', async () => {
   const { page, complaints } = await site.visit('?pose=dance:40');
   await open(page, 'Maps');
@@ -117,6 +141,23 @@ test('maps tell of fit, stretch and confidence, with a legend', async () => {
     await page.screenshot({ path: `${out}/map-${map!.toLowerCase()}.png` });
   }
   expect(await page.getByRole('figure').isVisible()).toBe(true);
+  expect(complaints).toEqual([]);
+});
+
+test('figures that come and go leave the GPU as it was, what they wear of their own and its textures, too', async () => {
+  const { page, complaints } = await site.visit('?pose=idle:1');
+  const buffer = adorn(readFileSync(new URL('../data/andy.glb', import.meta.url)));
+  await page.locator('#own').setInputFiles({ name: 'adorned.glb', mimeType: 'model/gltf-binary', buffer });
+  await expect.poll(() => page.getByRole('button', { name: 'adorned' }).getAttribute('aria-pressed'), patience).toBe('true');
+  const show = async (figure: string) => {
+    await ask(page, (demo, figure) => demo.choose(figure), figure);
+    return ask(page, (demo) => demo.memory(), null);
+  };
+  const andy = await show('andy');
+  expect((await show('adorned.glb')).textures).toBeGreaterThan(0);
+  await show('andy');
+  await show('adorned.glb');
+  expect(await show('andy')).toEqual(andy);
   expect(complaints).toEqual([]);
 });
 

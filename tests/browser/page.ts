@@ -72,6 +72,22 @@ export class Site {
   }
 }
 
+/** Where the page tells who listens to it of something, while it is left alone for two seconds. */
+export function announcements(page: Page): Promise<string[]> {
+  const listen = () =>
+    new Promise<string[]>((resolve) => {
+      const told = new Set<string>();
+      const regions = 'output, [role=status], [role=alert], [role=log], [aria-live]';
+      const note = ({ target }: MutationRecord) => {
+        const region = (target instanceof Element ? target : target.parentElement)?.closest(regions);
+        if (region) told.add(region.outerHTML);
+      };
+      new MutationObserver((all) => all.forEach(note)).observe(document, { childList: true, characterData: true, subtree: true });
+      setTimeout(() => resolve([...told]), 2000);
+    });
+  return page.evaluate(`(${listen.toString()})()`);
+}
+
 /** Runs `work` on the page's handle. */
 export function ask<Argument, Answer>(
   page: Page,

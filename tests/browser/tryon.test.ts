@@ -90,6 +90,40 @@ test('what is dropped is shown; what is broken is told in words, and what was sh
   expect((await capture(page)).figure).toBe('me.glb');
   expect(await page.getByRole('button', { name: 'my shirt' }).getAttribute('aria-pressed')).toBe('true');
   await page.screenshot({ path: `${out}/own.png` });
+  // An address can name nothing of that.
+  await expect.poll(() => new URL(page.url()).search, patience).toMatch(/^\?view=[^&]*$/);
+  // A new version of a garment takes the place of the one before.
+  const { vertex } = await capture(page);
+  await give({ ...shirt, buffer: readFileSync(file('public/cast/andy-trousers.safetensors')) });
+  await expect.poll(async () => (await capture(page)).vertex.length, patience).not.toBe(vertex.length);
+  await expect.poll(() => page.getByRole('button', { name: 'my shirt' }).count(), patience).toBe(1);
+  expect(await page.getByRole('button', { name: 'my shirt' }).getAttribute('aria-pressed')).toBe('true');
+  expect(complaints).toEqual([]);
+});
+
+test('a garment of the visitor on one of the cast is left out of the address, which opens', async () => {
+  const { page } = await site.visit('?pose=idle:1');
+  await page.locator('#own').setInputFiles(file('../tests/data/tshirt.safetensors'));
+  await expect.poll(async () => (await capture(page)).garment, patience).toBe('tshirt.safetensors');
+  const kept = () => ['figure', 'wear'].map((name) => new URL(page.url()).searchParams.get(name));
+  await expect.poll(kept, patience).toEqual(['andy', null]);
+  expect((await capture((await site.visit(new URL(page.url()).search)).page)).garment).toBe('tshirt');
+});
+
+test('tiles stay while what is worn changes, and nothing is fetched a second time', async () => {
+  const { page, files, complaints } = await site.visit('?pose=idle:1');
+  const tile = (await page.getByRole('button', { name: 'T-shirt' }).elementHandle())!;
+  const state = () => tile.evaluate((it) => [it === document.activeElement, it.getAttribute('aria-pressed')]);
+  await tile.focus();
+  for (const garments of [[], ['tshirt']]) {
+    await ask(page, (demo, garments) => demo.wear(garments), garments);
+    expect(await state()).toEqual([true, String(garments.length === 1)]);
+    // Whoever points at one is likely to press it.
+    await page.mouse.move(400, 300);
+    await tile.hover();
+    await page.waitForTimeout(500);
+  }
+  expect(files.filter((name) => name === 'andy-tshirt.safetensors')).toHaveLength(1);
   expect(complaints).toEqual([]);
 });
 
@@ -168,6 +202,19 @@ test('the simulation stands beside the network, at its own moments, and its dist
   expect(complaints).toEqual([]);
 });
 
+test('what was simulated and does not come is told, gives way to nothing, and is asked for again', async () => {
+  const truth = '**/sphere-sheet.truth*';
+  const { page } = await site.visit('?figure=sphere&wear=sheet&pose=wander 1:20', (bare) => bare.route(truth, (route) => route.abort()));
+  await open(page, 'Compare');
+  await page.getByLabel('with the simulation').click();
+  await expect.poll(() => page.getByRole('alert').isVisible(), patience).toBe(true);
+  expect(await page.getByLabel('The network alone').isChecked()).toBe(true);
+  await page.getByRole('button', { name: 'Close' }).click();
+  await page.unroute(truth);
+  await page.getByLabel('with the simulation').check();
+  await expect.poll(() => page.locator('#split-right').textContent(), patience).toBe('Simulation');
+});
+
 test('garments that come and go leave the GPU as it was', async () => {
   const { page, complaints } = await site.visit('?pose=idle:1&wear=tshirt.felt.4a6b4f.none');
   const change = (garments: string[]) => ask(page, (demo, garments) => demo.wear(garments), garments);
@@ -201,7 +248,7 @@ test('everything is reached by the keyboard, in the order in which it is seen, a
     from = at + 1;
   }
   await page.locator('#stage').focus();
-  for (const key of ['ArrowRight', 'ArrowUp', '-', 'PageUp']) await page.keyboard.press(key);
+  for (const key of ['ArrowRight', 'ArrowUp', '-', 'PageUp', 'Control+-', 'Alt+ArrowUp', 'Meta+ArrowUp']) await page.keyboard.press(key);
   await expect.poll(() => new URL(page.url()).searchParams.get('view'), patience).toBe('28,11,2.71,0.1');
   const unnamed = await page.locator('button:visible, input:visible, select:visible').evaluateAll((all) =>
     all.filter((one) => !(one.getAttribute('aria-label') || (one as HTMLInputElement).labels?.[0]?.textContent?.trim() || one.textContent?.trim())).map((one) => one.outerHTML),

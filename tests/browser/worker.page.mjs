@@ -20,7 +20,8 @@ export async function compare({ poses }) {
   const wanted = typed.map((pose) => list(one.predictCloth(pose)));
   const coarse = list(one.predictCloth(typed[0], { quality: 'coarse' }));
   const progress = [];
-  const traced = await there.loadModel(small, { onProgress: ({ loaded }) => progress.push(loaded) });
+  const request = { headers: new Headers({ accept: '*/*' }), signal: new AbortController().signal };
+  const traced = await there.loadModel(small, { request, onProgress: ({ loaded }) => progress.push(loaded) });
   const found = await Promise.all(typed.map((pose) => other.predictCloth(pose)));
   const result = {
     same: JSON.stringify(found.map(list)) === JSON.stringify(wanted),

@@ -1,4 +1,5 @@
-//! Poses outside the range seen in training: the cloth goes over from the network's to plain skinning, without a jump.
+//! Poses outside the range seen in training: the cloth goes over from the network's to the garment at rest, skinned,
+//! without a jump.
 
 use ctsn_core::cpu::{Cpu, Level};
 use ctsn_core::model::{HostModel, Storage};
@@ -54,7 +55,7 @@ fn among_the_poses_seen_the_network_counts_in_full() {
 }
 
 #[test]
-fn far_from_them_the_cloth_is_skinned_plainly() {
+fn far_from_them_the_garment_at_rest_is_skinned() {
     for golden in &golden::ALL {
         let (model, poses) = seen(golden);
         let mut predictor = Predictor::from_model(model.clone(), Level::new());

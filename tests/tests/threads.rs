@@ -2,6 +2,7 @@
 #![cfg(not(target_arch = "wasm32"))]
 
 use ctsn_core::cpu::{Cpu, Level, Threads};
+use ctsn_core::model::Cut;
 use ctsn_core::operation::{Activation, Attend, Blend, Linear};
 use ctsn_core::suite::numbers;
 use ctsn_core::topology::Graph;
@@ -79,6 +80,7 @@ fn predictions_are_the_same_on_any_number_of_threads() {
     let small = &golden::ALL[1];
     let (mut model, pose) = (small.host_model(), small.read().poses.swap_remove(1));
     model.body = Some(sphere::body(model.sizes.vertices));
+    model.cut = Some(Cut::new(model.rest.clone(), &model.graph, 4).expect("edges with a length"));
     let predict = |count: usize| {
         let threads = Threads::new(count).expect("threads");
         let mut predictor = Predictor::on_threads(model.clone(), Level::new(), threads);

@@ -35,7 +35,7 @@ class Arrival {
   }
 
   /** The file [bytes]; `keep` it for the next who wants it. When the last who waits gives up, so does the request. */
-  async wait(keep: boolean, { onProgress, onPart, signal }: PartsOptions, check?: (file: Uint8Array) => void): Promise<Uint8Array> {
+  async wait(keep: boolean, { onProgress, onPart, signal }: PartsOptions, check?: (file: Uint8Array) => Promise<unknown>): Promise<Uint8Array> {
     this.#waiting++;
     // An object of its own: one function may listen for several loads.
     const listener = { onProgress, onPart };
@@ -43,7 +43,7 @@ class Arrival {
     if (onPart) this.#parts.forEach(onPart);
     try {
       const bytes = await until(signal, this.#bytes);
-      check?.(bytes);
+      await check?.(bytes);
       this.#kept = keep;
       return bytes;
     } finally {
@@ -71,10 +71,23 @@ export async function fetchFile(source: string | URL, options: PartsOptions): Pr
   return download(source, signal ? { ...options, request: { ...request, signal } } : options);
 }
 
-/** Fetches a file ahead. It is kept until somebody wants it, unless `check` throws. */
-export async function fetchAhead(source: string | URL, options: PartsOptions, check: (file: Uint8Array) => void): Promise<void> {
+/** Fetches a file ahead. It is kept until somebody wants it, unless `check` refuses it. */
+export async function fetchAhead(source: string | URL, options: PartsOptions, check: (file: Uint8Array) => Promise<unknown>): Promise<void> {
   options.signal?.throwIfAborted();
   await Arrival.of(String(source), options.cache).wait(true, options, check);
+}
+
+/** What ends a load: any of the caller's signals, or we, where a model is disposed of before it is complete. */
+export function follow(signals: (AbortSignal | null | undefined)[]): { end: AbortController; done: () => void } {
+  const end = new AbortController();
+  // Not by a signal that ends the listening: Node keeps both for ever.
+  const leave = signals.map((signal) => {
+    const abort = (): void => end.abort(signal?.reason);
+    if (signal?.aborted) abort();
+    signal?.addEventListener('abort', abort);
+    return () => signal?.removeEventListener('abort', abort);
+  });
+  return { end, done: () => leave.forEach((one) => one()) };
 }
 
 /** What comes of `work`, or the reason of `signal` where that is aborted first. */

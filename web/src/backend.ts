@@ -47,6 +47,8 @@ export class Switch {
   /** Name of the adapter in use, or last in use. */
   adapter: string | undefined;
   measured: Measured | undefined;
+  /** Whether anybody has said where. */
+  isChosen = false;
 
   #cpu: Predictor;
   readonly #openSide: Opener;
@@ -71,6 +73,7 @@ export class Switch {
   }
 
   async choose(choice: BackendChoice, device?: GPUDevice): Promise<void> {
+    this.isChosen = true;
     const decision = this.#decide();
     this.#leave(undefined);
     if (choice === 'cpu') return;

@@ -16,8 +16,8 @@ export interface DownloadOptions {
   request?: RequestInit | undefined;
   /**
    * Keeps the file in the page's Cache Storage of this name, by its address: the next visit asks no server. A new
-   * version wants a new address, such as `shirt.safetensors?v=2`, and takes the old one's place. Ignored where there is
-   * no Cache Storage: in Node, on pages without https.
+   * version wants a new address, such as `shirt.safetensors?v=2`, and takes the old one's place. What turns out to be
+   * no model is not kept. Ignored where there is no Cache Storage: in Node, on pages without https.
    */
   cache?: string | undefined;
   /** Ends it; the call is refused with the signal's reason. */
@@ -52,15 +52,33 @@ export async function download(
   return collect(response, { onProgress, onPart }, refuse('the answer broke off'));
 }
 
+/** What is on its way into a cache, by address. */
+const keeping = new Map<string, Promise<void>>();
+
 /** The answer to a request: what the cache has, or what comes, which it takes once it has come. */
 async function ask(address: string | URL, request: RequestInit | undefined, cache: string | undefined): Promise<Response> {
-  // A page may be forbidden to keep anything; then it asks each time.
-  const store = cache === undefined ? undefined : await globalThis.caches?.open(cache).catch(() => undefined);
+  const store = await openStore(cache);
   const kept = await store?.match(address);
   if (kept) return kept;
   const response = await fetch(address, request);
-  if (store && response.ok) keep(store, response.clone(), address).catch(() => undefined);
+  if (store && response.ok) {
+    const work = keep(store, response.clone(), address).catch(() => undefined);
+    keeping.set(String(address), work.finally(() => keeping.delete(String(address))));
+  }
   return response;
+}
+
+/** A page may be forbidden to keep anything; then it asks each time. */
+async function openStore(cache: string | undefined): Promise<Cache | undefined> {
+  return cache === undefined ? undefined : globalThis.caches?.open(cache).catch(() => undefined);
+}
+
+/** Lets go of what was kept and is of no use. */
+export async function forget(address: string | URL, cache: string | undefined): Promise<void> {
+  const store = await openStore(cache);
+  // It may still be on its way.
+  await keeping.get(String(address));
+  await store?.delete(address).catch(() => undefined);
 }
 
 /** Keeps an answer in place of those with other versions of its address. */

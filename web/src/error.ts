@@ -9,6 +9,10 @@ export type CtsnErrorCode =
   | 'wasm'
   /** An argument is of the wrong kind. */
   | 'argument'
+  /** The file is something else, such as a web page. */
+  | 'not_safetensors'
+  /** The file is cut off; a packed one may be damaged. */
+  | 'truncated'
   /** The pose, or one of its named matrices, has the wrong number of values. */
   | 'joint_count'
   /** A named pose or a character lacks a joint of the model; `joint` names it. */
@@ -25,6 +29,10 @@ export type CtsnErrorCode =
   | 'disposed'
   /** Buffers were asked for where no GPU computes. The CPU answers everything else. */
   | 'no_device'
+  /** The script of `ctsn/worker` does not load, or has stopped. */
+  | 'worker'
+  /** What a page's own part of a wardrobe threw, such as `load` or `covered`: `cause`. */
+  | 'garment'
   | (string & {});
 
 /** Every error this package throws on purpose. */

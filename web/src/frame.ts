@@ -28,7 +28,8 @@ export interface Frame {
   readonly normals: Float32Array;
   /**
    * How much of the network's folds the cloth shows: 1 in poses like those of the training, less in others, 0 where
-   * nothing but plain skinning is left. Always 1 where the model file does not say what poses it was trained on.
+   * the garment at rest is moved by its joints alone. Always 1 where the model file does not say what poses it was
+   * trained on.
    */
   readonly confidence: number;
 }

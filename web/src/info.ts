@@ -6,7 +6,7 @@ export interface Training {
   readonly garment?: string | undefined;
   /** Name of the fabric that was simulated. */
   readonly fabric?: string | undefined;
-  /** Names of the clips whose poses it has seen. */
+  /** Names of the clips it was made of; with ten or more, the last tenth of them it has not seen. */
   readonly clips?: readonly string[] | undefined;
   /** Poses that were simulated. */
   readonly poses?: number | undefined;

@@ -1,6 +1,6 @@
 import type { BackendChoice, Opener } from './backend.js';
-import { fetchAhead, fetchFile, until } from './arrival.js';
-import type { DownloadOptions } from './download.js';
+import { fetchAhead, fetchFile, follow, until } from './arrival.js';
+import { forget, type DownloadOptions } from './download.js';
 import { CtsnError } from './error.js';
 import { ownDevice } from './gpu.js';
 import { ModelFile } from './model-file.js';
@@ -77,18 +77,18 @@ export async function loadModel(
   whole.catch(() => undefined);
   const [engine, first] = await until(signal, Promise.all([starting, Promise.race([whole, coarse])]));
   const finest = held ? 'full' : 'coarse';
-  const model = new ClothModel(readModel(engine, held ?? first, polish), engine, openSide, finest);
-  const settle = async () => {
+  const make = (bytes: Uint8Array) => trust(source, options.cache, () => readModel(engine, bytes, polish));
+  const model = new ClothModel(await make(held ?? first), engine, openSide, finest);
+  const settle = async (isChosen = false) => {
     try {
-      await until(signal, model.setBackend(backend, device));
+      if (!isChosen) await until(signal, model.setBackend(backend, device));
     } finally {
       // A model that changes to a GPU later asks again.
       held = undefined;
     }
   };
   if (finest === 'coarse') {
-    const predictor = whole.then((bytes) => readModel(engine, bytes, polish));
-    model.expect(predictor, settle, (reason) => end.abort(reason));
+    model.expect(whole.then(make), settle, (reason) => end.abort(reason));
     return model;
   }
   try {
@@ -100,26 +100,14 @@ export async function loadModel(
   }
 }
 
-/** What ends a download: any of the caller's signals, or we, where a model is disposed of before it is complete. */
-function follow(signals: (AbortSignal | null | undefined)[]): { end: AbortController; done: () => void } {
-  const end = new AbortController();
-  // Not by a signal that ends the listening: Node keeps both for ever.
-  const leave = signals.map((signal) => {
-    const abort = (): void => end.abort(signal?.reason);
-    if (signal?.aborted) abort();
-    signal?.addEventListener('abort', abort);
-    return () => signal?.removeEventListener('abort', abort);
-  });
-  return { end, done: () => leave.forEach((one) => one()) };
-}
-
 /**
  * Fetches a model file, and what computes it, before it is wanted. The next `loadModel` of that address takes the file,
- * which is kept until then.
+ * which is kept until then, unless it has a `request` of its own.
  */
-export async function preload(source: string | URL, options: LoadOptions = {}): Promise<void> {
+export async function preload(source: string | URL, options: Omit<LoadOptions, 'request'> = {}): Promise<void> {
   const engine = startEngine(countThreads(options.threads), options);
-  await until(options.signal, Promise.all([engine, fetchAhead(source, options, (file) => void recognise(file, String(source)))]));
+  const check = (file: Uint8Array) => trust(source, options.cache, () => recognise(file, String(source)));
+  await until(options.signal, Promise.all([engine, fetchAhead(source, options, check)]));
 }
 
 /**
@@ -176,6 +164,16 @@ function recognise(file: Uint8Array, address: string): Uint8Array {
   throw new CtsnError('not_safetensors', `${address}: wanted a model file (safetensors), found ${what} that begins with ${JSON.stringify(start)}: ${advice}`);
 }
 
+/** What `work` makes of a file. Where that is refused, the next visit asks for the file anew. */
+async function trust<T>(source: ModelSource, cache: string | undefined, work: () => T | Promise<T>): Promise<T> {
+  try {
+    return await work();
+  } catch (error) {
+    if (typeof source === 'string' || source instanceof URL) await forget(source, cache);
+    throw error;
+  }
+}
+
 /** A model file [bytes] on its way, and what comes of it first: see `ModelFile`. */
 interface Coming {
   file: Promise<Uint8Array>;
@@ -200,7 +198,7 @@ function reader(source: ModelSource): (options: DownloadOptions, progressive: bo
     const read = async () => {
       if (bytes) file.add(bytes);
       else await fetchFile(source as string | URL, { ...options, onPart: (part) => file.add(part) });
-      return named(await file.end());
+      return trust(source, options.cache, async () => named(await file.end()));
     };
     return { file: read(), coarse };
   };

@@ -84,10 +84,10 @@ export class ClothModel extends EventTarget {
     return this.#complete;
   }
 
-  /** @internal The whole network is on its way; `settle` follows it, `abandon` ends it. */
-  expect(whole: Promise<Predictor>, settle: () => Promise<void>, abandon: (reason: CtsnError) => void): void {
+  /** @internal The whole network is on its way; `settle` hears, when it is there, whether a backend was chosen. */
+  expect(whole: Promise<Predictor>, settle: (isChosen: boolean) => Promise<void>, abandon: (reason: CtsnError) => void): void {
     this.#abandon = abandon;
-    this.#complete = whole.then((predictor) => this.#replace(predictor)).then(() => settle().then(() => this));
+    this.#complete = whole.then((predictor) => this.#replace(predictor)).then(() => settle(this.#switch.isChosen).then(() => this));
     // Nobody has to ask.
     this.#complete.catch(() => undefined);
   }

@@ -43,7 +43,7 @@ export class Fade {
     this.#computed = quality;
   }
 
-  /** @internal What the last prediction had to compute. */
+  /** @internal What the prediction after the last `advance` has to compute, or had to. */
   get computed(): Quality {
     return this.#computed;
   }
@@ -68,11 +68,14 @@ export class Fade {
   advance(quality: Quality): void {
     const { skeleton, mesh } = shares[quality];
     // At rest no number is made: to V8 a new one is an object.
-    if (this.#shown && this.#skeleton === skeleton && this.#mesh === mesh) return;
-    const step = this.#shown && this.length > 0 ? 1 / this.length : 1;
-    this.#shown = true;
-    this.#skeleton = toward(this.#skeleton, skeleton, step);
-    this.#mesh = toward(this.#mesh, mesh, step);
+    if (!this.#shown || this.#skeleton !== skeleton || this.#mesh !== mesh) {
+      const step = this.#shown && this.length > 0 ? 1 / this.length : 1;
+      this.#shown = true;
+      this.#skeleton = toward(this.#skeleton, skeleton, step);
+      this.#mesh = toward(this.#mesh, mesh, step);
+    }
+    const { streams } = this;
+    this.#computed = streams === Streams.Both ? 'full' : streams === Streams.Skeleton ? 'coarse' : 'skinned';
   }
 
   /** @internal Predicts the pose that `predictor` holds, on the CPU. False if that failed. */
@@ -80,7 +83,6 @@ export class Fade {
     const { streams } = this;
     if (streams !== Streams.Both || (this.every === 1 && !this.#folds)) {
       this.dispose();
-      this.#computed = streams === Streams.Both ? 'full' : streams === Streams.Skeleton ? 'coarse' : 'skinned';
       return predictor.predict(streams, this.#skeleton, this.#mesh);
     }
     // The first answer is shown at once: it is what is shown already, or it has hardly a share yet.

@@ -2,10 +2,11 @@
 import { gzipSync } from 'node:zlib';
 import { MeshBasicMaterial } from 'three';
 import { afterEach, expect, test, vi } from 'vitest';
-import { loadModel, preload, type CpuClothModel, type CtsnError } from 'ctsn';
+import { loadModel, preload, type BackendChoice, type ClothModel, type CpuClothModel, type CtsnError } from 'ctsn';
 import { Cloth } from 'ctsn/three';
 import { difference } from '../../tests/browser/safetensors.js';
 import { characterOf } from './character.js';
+import { fakeCaches } from './fake-caches.js';
 import { bytesOf, readGolden, spliceHeader } from './golden.js';
 
 afterEach(() => vi.unstubAllGlobals());
@@ -200,6 +201,23 @@ test('a model disposed of before it is complete ends the request', async () => {
   expect(server.signal()!.aborted).toBe(true);
 });
 
+// There is no WebGPU here: that is what who asked for it is told.
+test.each([
+  ['cpu', 'webgpu', undefined],
+  ['webgpu', 'cpu', 'this browser, or this page, has no WebGPU'],
+] as const)('who chooses %s while the folds come is asked no more when they are there', async (chosen, loaded, fallback) => {
+  const { bytes, coarse } = coarseFirst();
+  const server = serve();
+  server.send(bytes.subarray(0, coarse));
+  const model: ClothModel = await loadModel(address(), { progressive: true, backend: loaded as BackendChoice });
+  await model.setBackend(chosen);
+  server.send(bytes.subarray(coarse));
+  server.end();
+  await model.complete;
+  expect([model.finest, model.fallback]).toEqual(['full', fallback]);
+  model.dispose();
+});
+
 test('a file that is on its way is shared, from its beginning on', async () => {
   const { bytes, coarse } = coarseFirst();
   const server = serve();
@@ -218,27 +236,6 @@ test('a file that is on its way is shared, from its beginning on', async () => {
   }
 });
 
-/** Cache Storage, as far as the package uses it. */
-function fakeCaches(): Map<string, Map<string, Response>> {
-  const all = new Map<string, Map<string, Response>>();
-  const open = (name: string) => {
-    const files = all.get(name) ?? new Map<string, Response>();
-    all.set(name, files);
-    const plain = (url: string) => url.split('?')[0]!;
-    const like = (url: string, loosely?: boolean) =>
-      [...files.keys()].filter((key) => (loosely ? plain(key) === plain(url) : key === url));
-    return Promise.resolve({
-      match: (url: string) => Promise.resolve(files.get(url)?.clone()),
-      put: async (url: string, response: Response) => void files.set(url, new Response(await response.arrayBuffer())),
-      keys: (url: string, options?: { ignoreSearch: boolean }) =>
-        Promise.resolve(like(url, options?.ignoreSearch).map((key) => ({ url: key }))),
-      delete: ({ url }: { url: string }) => Promise.resolve(files.delete(url)),
-    });
-  };
-  vi.stubGlobal('caches', { open });
-  return all;
-}
-
 test('a page keeps files under their address; a new version takes the place of the old one', async () => {
   const kept = fakeCaches();
   let asked = 0;
@@ -256,6 +253,35 @@ test('a page keeps files under their address; a new version takes the place of t
   await load('https://shop.test/shirt?v=2', 'wardrobe');
   await vi.waitUntil(() => !kept.get('wardrobe')!.has('https://shop.test/shirt?v=1'));
   expect([...kept.get('wardrobe')!.keys()]).toEqual(['https://shop.test/shirt?v=2']);
+});
+
+const damaged = () => gzipSync(bytesOf('tiny')).fill(0x55, 1000);
+
+test.each([
+  ['a web page', () => '<!doctype html>', 'not_safetensors'],
+  ['a message', () => '{ "error": "no such shirt" }', 'not_safetensors'],
+  ['half a model', () => bytesOf('tiny').subarray(0, 5000), 'truncated'],
+  ['a damaged packed model', damaged, 'truncated'],
+])('%s is not kept: the next visit asks again', async (_, wrong, code) => {
+  const kept = fakeCaches();
+  const answers: unknown[] = [wrong(), bytesOf('tiny')];
+  vi.stubGlobal('fetch', () => Promise.resolve(new Response(answers.shift() as BodyInit)));
+  const [url, cache] = [address(), 'wardrobe'];
+  expect(await codeOf(loadModel(url, { cache }))).toBe(code);
+  expect([...kept.get(cache)!.keys()]).toEqual([]);
+  (await loadModel(url, { cache })).dispose();
+  await vi.waitUntil(() => kept.get(cache)!.has(url));
+});
+
+test('what is no model is not kept when it is fetched ahead, nor when it was kept before', async () => {
+  const kept = fakeCaches();
+  vi.stubGlobal('fetch', () => Promise.resolve(new Response('<!doctype html>')));
+  const [url, cache] = [address(), 'wardrobe'];
+  expect(await codeOf(preload(url, { cache }))).toBe('not_safetensors');
+  expect(kept.get(cache)!.size).toBe(0);
+  kept.get(cache)!.set(url, new Response('<!doctype html>'));
+  expect(await codeOf(loadModel(url, { cache }))).toBe('not_safetensors');
+  expect(kept.get(cache)!.size).toBe(0);
 });
 
 test('what cannot be kept is loaded all the same', async () => {

@@ -1,14 +1,22 @@
 // Changes of quality blend, and a scheduler spends its budget where it shows.
 import { MeshBasicMaterial, PerspectiveCamera } from 'three';
 import { afterEach, expect, test, vi } from 'vitest';
-import type { ClothModel } from 'ctsn';
+import { loadModel, type ClothModel } from 'ctsn';
 import { Cloth, ClothScheduler } from 'ctsn/three';
+import { Streams } from '../dist/raw.js';
+import { collectGarbage } from './allocation.js';
 import { characterOf } from './character.js';
+import { FakeDevice, FakeNavigator, gpu } from './fake-gpu.js';
 import { difference } from '../../tests/browser/safetensors.js';
-import { loadGolden } from './golden.js';
+import { bytesOf, loadGolden, readGolden } from './golden.js';
+
+vi.mock('../dist/raw-gpu.js', () => import('./fake-gpu.js'));
 
 const material = new MeshBasicMaterial();
-afterEach(() => void vi.restoreAllMocks());
+afterEach(() => {
+  vi.restoreAllMocks();
+  vi.unstubAllGlobals();
+});
 
 const drawn = (cloth: Cloth) => (cloth.geometry.getAttribute('position').array as Float32Array).slice();
 const version = (cloth: Cloth) => (cloth.geometry.getAttribute('position') as unknown as { version: number }).version;
@@ -73,8 +81,10 @@ function clocked(model: ClothModel): Record<keyof typeof cost, number> {
 }
 
 /** Ten cloths in a row away from the camera, and one behind it. */
-async function crowd() {
-  const { model, poses } = await loadGolden('tiny');
+async function crowd(backend: 'cpu' | 'webgpu' = 'cpu') {
+  vi.stubGlobal('navigator', new FakeNavigator());
+  const model: ClothModel = await loadModel(bytesOf('tiny'), { backend, device: new FakeDevice('lent').lent });
+  const { poses } = readGolden('tiny');
   const cloths = Array.from({ length: 11 }, (_, i) => {
     const character = characterOf(model.joints, poses[0]!);
     character.position.z = i < 10 ? -3 - 3 * i : 30;
@@ -121,4 +131,32 @@ test('what is off screen is not predicted, until it is seen', async () => {
   scheduler.remove(behind).update(camera);
   expect(version(behind)).toBe(before[0]! + 1);
   model.dispose();
+});
+
+test('all cloths on a GPU are full, whatever the budget, and counted by what they ask for', async () => {
+  const { model, cloths, camera } = await crowd('webgpu');
+  const scheduler = new ClothScheduler({ budget: 0 }).add(...cloths);
+  gpu.submitted = [];
+  expect(scheduler.update(camera).tally).toEqual({ full: 10, coarse: 0, skinned: 0 });
+  expect(gpu.submitted).toEqual(Array(10).fill(Streams.Both));
+  for (const cloth of cloths) {
+    Object.assign(await cloth.settled(), { quality: 'coarse', blend: 0 });
+  }
+  expect(scheduler.update(camera).tally).toEqual({ full: 0, coarse: 10, skinned: 0 });
+  expect(gpu.submitted.slice(10)).toEqual(Array(10).fill(Streams.Skeleton));
+  model.dispose();
+});
+
+test('a scheduler holds no model of which it has no cloth any more', async () => {
+  const scheduler = new ClothScheduler();
+  const show = async () => {
+    const { model, cloths, camera } = await crowd();
+    scheduler.add(...cloths).update(camera).remove(...cloths);
+    model.dispose();
+    return new WeakRef(model);
+  };
+  const gone = await show();
+  await new Promise((resolve) => setTimeout(resolve));
+  collectGarbage();
+  expect(gone.deref()).toBeUndefined();
 });

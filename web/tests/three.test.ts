@@ -10,9 +10,9 @@ import {
   Vector3,
 } from 'three';
 import type { Bone, BufferAttribute, Material, Object3D, Sphere } from 'three';
-import { expect, test } from 'vitest';
+import { expect, test, vi } from 'vitest';
 import { ClothLoader, Cloth } from 'ctsn/three';
-import { CtsnError, loadModel, type CpuClothModel } from 'ctsn';
+import { CtsnError, loadModel, preload, type CpuClothModel } from 'ctsn';
 import { difference } from '../../tests/browser/safetensors.js';
 import { characterOf, skeletonOf } from './character.js';
 import { bytesOf, loadConfident, loadGolden } from './golden.js';
@@ -226,6 +226,20 @@ test('the loader knows its manager, its path and the failure', async () => {
   await expect(loader.loadAsync('AAAA')).rejects.toMatchObject({ code: 'not_safetensors' });
   await Promise.resolve();
   expect(events.map((event) => event.split(' ')[0]).slice(2)).toEqual(['start', 'error', 'end']);
+});
+
+test('a loader takes what was preloaded, unless it has a way of its own to ask', async () => {
+  const fetched = vi.fn((..._: unknown[]) => Promise.resolve(new Response(bytesOf('tiny') as BodyInit)));
+  vi.stubGlobal('fetch', fetched);
+  const address = 'https://shop.test/tiny.safetensors';
+  await preload(address);
+  const loader = new ClothLoader();
+  (await loader.loadAsync(address)).dispose();
+  expect(fetched).toHaveBeenCalledTimes(1);
+  const headers = { 'x-a': 'b' };
+  (await loader.setRequestHeader(headers).setWithCredentials(true).loadAsync(address)).dispose();
+  vi.unstubAllGlobals();
+  expect(fetched).toHaveBeenLastCalledWith(address, expect.objectContaining({ headers, credentials: 'include' }));
 });
 
 test('what onLoad throws is told, and the manager ends; a load may be aborted, by the loader or its manager', async () => {

@@ -51,6 +51,8 @@ test('the first garment is there at once; the next comes before it, and only the
   expect([seen(wardrobe), wardrobe.worn]).toEqual([{ shirt: 1 }, ['shirt']]);
   pass(wardrobe, 0);
   const shirt = wardrobe.cloth('shirt')!;
+  // A page that has nothing to draw for a minute.
+  now += 60_000;
   await wardrobe.wear('dress');
   expect([wardrobe.worn, wardrobe.cloth('shirt')]).toEqual([['dress'], undefined]);
   expect(pass(wardrobe, 0.25)).toEqual({ shirt: 1, dress: 0.5 });
@@ -168,6 +170,22 @@ test('a web page at the address of a garment is refused ahead as it would be whe
   } finally {
     vi.unstubAllGlobals();
   }
+});
+
+test('what is worn is not fetched ahead, and the rest in the way that the page says', async () => {
+  const fetched: unknown[] = [];
+  const options = { load: () => loadModel(sources.shirt), prefetch: async (source: string | URL) => void fetched.push(source) };
+  const { wardrobe } = await wardrobeOf(options, { shirt: 'https://shop.test/shirt', dress: 'https://shop.test/dress' });
+  await wardrobe.wear('shirt');
+  for (const garment of wardrobe.garments) await wardrobe.prefetch(garment);
+  expect(fetched).toEqual(['https://shop.test/dress']);
+});
+
+test('an error of others is the cause; what they call a code is none of ours', async () => {
+  const cause = new DOMException('no room', 'NetworkError');
+  expect(cause.code).toBe(19);
+  const { wardrobe } = await wardrobeOf({ load: () => Promise.reject(cause) });
+  await expect(wardrobe.wear('shirt')).rejects.toMatchObject({ code: 'garment', message: 'garment "shirt": no room', cause });
 });
 
 test('several garments at once; who changes her mind finds what was on its way off', async () => {

@@ -1,8 +1,8 @@
 // A cloth whose model computes in a worker, with the worker's part done here: tests/browser has a real one.
 import { MeshBasicMaterial, PerspectiveCamera } from 'three';
-import { expect, test } from 'vitest';
+import { expect, test, vi } from 'vitest';
 import { Cloth, ClothScheduler } from 'ctsn/three';
-import { WorkerClothModel } from 'ctsn/worker';
+import { loadModel, WorkerClothModel } from 'ctsn/worker';
 import { difference } from '../../tests/browser/safetensors.js';
 import { characterOf } from './character.js';
 import { loadGolden, type Golden } from './golden.js';
@@ -114,4 +114,22 @@ test('a model in a worker that was loaded progressive tells when its folds are t
   await expect(cut.complete).rejects.toThrow('cut');
   expect(cut.finest).toBe('coarse');
   model.dispose();
+});
+
+test('how to ask for a file is posted as far as it can be, and its signal ends the load', async () => {
+  const posted: unknown[] = [];
+  vi.stubGlobal('Worker', class {
+    postMessage = (message: unknown) => posted.push(structuredClone(message));
+  });
+  const [given, reason] = [new AbortController(), new Error('enough')];
+  const request = { headers: new Headers({ 'x-a': 'b' }), credentials: 'include', signal: given.signal } as const;
+  const load = loadModel('https://shop.test/shirt.safetensors', { request });
+  given.abort(reason);
+  await expect(load).rejects.toBe(reason);
+  await expect(loadModel('https://shop.test/shirt.safetensors', { request })).rejects.toBe(reason);
+  vi.unstubAllGlobals();
+  expect(posted).toEqual([
+    expect.objectContaining({ call: 1, type: 'load', options: { request: { headers: [['x-a', 'b']], credentials: 'include' } } }),
+    { call: 1, type: 'abort' },
+  ]);
 });

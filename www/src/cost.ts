@@ -42,7 +42,7 @@ export class Cost {
     const least = Math.min(1, ...worn.map(({ cloth }) => cloth.confidence));
     const share = `${Math.round(100 * least)} %`;
     element('confidence-bar').style.setProperty('--share', share);
-    const told = least > 0.75 ? '' : 'Unlike the poses it learned from: the folds fade to plain skinning.';
+    const told = least > 0.75 ? '' : 'Unlike the poses it learned from: its folds fade.';
     element('confidence').textContent = share;
     // Said once, not in every frame.
     if (told !== this.#confidence) element('confidence-note').textContent = this.#confidence = told;

@@ -1,6 +1,7 @@
 import type { BackendChoice, Progress, Quality } from 'ctsn';
 import type { Figure, GarmentEntry } from './cast/catalogue.js';
 import { combine } from './cast/catalogue.js';
+import { isOwn, ownFigure, ownGarment } from './cast/own.js';
 import { Rail } from './cast/rail.js';
 import { Rivals } from './compare/rivals.js';
 import { Simulated } from './compare/simulated.js';
@@ -35,6 +36,8 @@ export class TryOn {
   /** Predictions since the page was opened. */
   predictions = 0;
   dressed!: Dressed;
+  /** Whether the figure is in a pose of one's own. */
+  isPosed = false;
   readonly figures: Figure[];
   readonly #rail = new Rail();
   readonly #fabric = new FabricPanel();
@@ -43,7 +46,6 @@ export class TryOn {
   readonly #maps = new Maps();
   readonly #rivals: Rivals;
   readonly #simulated = new Simulated();
-  #own = false;
   #changed = true;
   /** Until when a change of garments is seen, in milliseconds. */
   #fading = 0;
@@ -103,7 +105,7 @@ export class TryOn {
       // A page in the background gets no animation frames; when it is back, the motion goes on where it stood.
       const seconds = Math.min((now - (last ?? now)) / 1000, 0.1);
       last = now;
-      const playing = this.transport.playing && !this.#own;
+      const playing = this.transport.playing && !this.isPosed;
       if (playing) this.dressed.character.advance(seconds * this.transport.speed);
       const moved = this.stage.turn();
       if (moved) this.onScene();
@@ -117,13 +119,13 @@ export class TryOn {
     const { dressed } = this;
     const { clip, time, duration } = dressed.character;
     this.#changed = false;
-    const moment = this.#simulated.wanted && !this.#own ? this.#simulated.hold(dressed) : undefined;
+    const moment = this.#simulated.wanted && !this.isPosed ? this.#simulated.hold(dressed) : undefined;
     this.predict();
     this.#rivals.update(dressed, moment);
-    this.#maps.update(dressed, this.transport.playing && !this.#own, moment);
+    this.#maps.update(dressed, this.transport.playing && !this.isPosed, moment);
     this.stage.follow(dressed.hip, dressed.head);
     this.#render();
-    this.transport.show(this.#own ? '' : clip, time, duration);
+    this.transport.show(this.isPosed ? '' : clip, time, duration);
     this.cost.show(dressed);
   }
 
@@ -160,12 +162,14 @@ export class TryOn {
     this.#pose();
   }
 
-  /** What an address keeps of the page. */
+  /** What an address keeps of the page: nothing of what was dropped on it. */
   get scene(): Scene {
     const { entry, worn, looks, character, hip } = this.dressed;
-    const wear = worn.map(({ entry }) => ({ garment: entry.id, look: looks.get(entry)! }));
-    const scene: Scene = { figure: entry.id, wear, view: this.stage.view };
-    if (this.#own) scene.pose = { own: writePose(character.bones, hip) };
+    const { view } = this.stage;
+    if (isOwn(entry.file)) return { view };
+    const wear = worn.flatMap(({ entry }) => (isOwn(entry.file) ? [] : { garment: entry.id, look: looks.get(entry)! }));
+    const scene: Scene = { figure: entry.id, view, ...(wear.length > 0 || worn.length === 0 ? { wear } : {}) };
+    if (this.isPosed) scene.pose = { own: writePose(character.bones, hip) };
     else if (!this.transport.playing && character.clip) scene.pose = { clip: character.clip, frame: RATE * character.time };
     return scene;
   }
@@ -182,8 +186,7 @@ export class TryOn {
     const strange = files.find((file) => !kind(file));
     if (strange) throw new Error(`${strange.name}: a character (.glb) or a model of a garment (.safetensors) is wanted`);
     for (const file of files.filter((file) => kind(file) === 'glb')) {
-      const name = file.name.replace(/\.glb$/i, '');
-      const entry = { id: file.name, name, file: URL.createObjectURL(file), bytes: file.size, garments: [] };
+      const entry = ownFigure(file);
       await this.choose(entry);
       this.figures.push(entry);
       this.#tell();
@@ -193,16 +196,10 @@ export class TryOn {
 
   async #bringGarment(file: File): Promise<void> {
     const { dressed } = this;
-    const entry: GarmentEntry = {
-      id: file.name,
-      name: file.name.replace(/\.safetensors$/i, ''),
-      place: 'whole',
-      fabric: 'jersey',
-      colour: '#8a6d8f',
-      print: 'none',
-      file: URL.createObjectURL(file),
-      bytes: file.size,
-    };
+    const entry = ownGarment(file);
+    const before = dressed.entry.garments.find((one) => isOwn(one.file) && one.name === entry.name);
+    // A new version under a name that no garment has had: the wardrobe goes by names.
+    if (before) entry.id = `${before.id}'`;
     dressed.add(entry);
     try {
       await this.wear([entry]);
@@ -210,6 +207,10 @@ export class TryOn {
       dressed.remove(entry);
       throw error;
     }
+    // It is still worn where another call has overtaken this one.
+    if (!before || dressed.worn.some(({ entry }) => entry === before)) return;
+    dressed.remove(before);
+    this.#tell();
   }
 
   #render(): void {
@@ -219,7 +220,7 @@ export class TryOn {
   }
 
   #show(clip: string, seconds: number): void {
-    this.#own = false;
+    this.isPosed = false;
     this.dressed.character.show(clip, seconds);
     this.#changed = true;
     this.onScene();
@@ -227,7 +228,7 @@ export class TryOn {
 
   /** The figure is in a pose of one's own from now on. */
   #pose(): void {
-    this.#own = this.#changed = true;
+    this.isPosed = this.#changed = true;
     this.onScene();
   }
 
@@ -235,7 +236,7 @@ export class TryOn {
     const before = this.dressed as Dressed | undefined;
     this.stage.scene.add(dressed.character.scene, dressed.wardrobe);
     this.dressed = dressed;
-    this.#own = false;
+    this.isPosed = false;
     before?.dispose();
     const { bones, clips } = dressed.character;
     dressed.character.scene.updateMatrixWorld(true);
@@ -271,7 +272,7 @@ export class TryOn {
     this.transport.onScrub = (seconds) => this.#show(this.dressed.character.clip, seconds);
     this.transport.onClip = (clip) => this.#show(clip, 0);
     this.transport.onPlay = () => {
-      if (this.transport.playing && this.#own) this.#show(this.dressed.character.clip, this.dressed.character.time);
+      if (this.transport.playing && this.isPosed) this.#show(this.dressed.character.clip, this.dressed.character.time);
       this.onScene();
     };
     this.#poser.onStart = () => this.transport.play(false);

@@ -1,13 +1,13 @@
 //! How far a pose lies outside the poses seen in training, and how much the network's residuals count there: in full
-//! among the seen poses, not at all far away, where the cloth is skinned plainly. The paper (§ Limitations) leaves this
-//! open.
+//! among the seen poses, not at all far away, where the garment at rest is skinned with the learned weights. The paper
+//! (§ Limitations) leaves this open.
 
 use crate::model::{HostModel, Skinning};
 use crate::pose::{BodyFrame, Range, Rig};
 use glam::{Vec3, Vec4};
 
 /// Up to the excess TRUST the residuals count in full, from DOUBT on they count for nothing; in units of the garment's
-/// size. Between the two, the cloth goes over from folds to plain skinning without a jump. Measured on a T-shirt: in
+/// size. Between the two, the cloth goes over from folds to that skinning without a jump. Measured on a T-shirt: in
 /// unseen clips the excess stays below 0.05; when single joints are turned further and further, the network's cloth is
 /// stretched more than plainly skinned cloth from 0.3 to 0.4 on.
 pub const TRUST: f32 = 0.1;

@@ -109,7 +109,7 @@ fn a_study_prints_its_tables_goes_on_and_refuses_another_s_outcomes() {
     // Without one of its outcomes the study makes that one anew, and the tables are the same.
     std::fs::remove_file(folder.path("study/pbns.json")).expect("an outcome");
     assert_eq!(folder.accepts(command), told);
-    folder.refuses("study data -o study --tables comparison --epochs 2", &["another study", "epochs: 2"]);
+    folder.refuses("study data -o study --tables comparison --epochs 2", &["another study", "epochs: Some(2)"]);
     write_dataset(&folder, "early", &setup, &samples[..5]);
     folder.refuses("study early -o other", &["at least 50 poses, found 5"]);
 }

@@ -58,7 +58,7 @@ fn mix(character: &Character, from: &Pose, to: &Pose, t: f64) -> Pose {
 }
 
 /// Joint transforms relative to their parents.
-fn local(character: &Character, pose: &Pose) -> Pose {
+pub(crate) fn local(character: &Character, pose: &Pose) -> Pose {
     let relative = |(index, parent): (usize, Option<usize>)| match parent {
         Some(parent) => pose[parent].inverse() * pose[index],
         None => pose[index],

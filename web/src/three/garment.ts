@@ -1,4 +1,5 @@
 import type { Material } from 'three';
+import { CtsnError } from '../error.js';
 import type { Cloth } from './cloth.js';
 import type { Ghost } from './ghost.js';
 import type { AnyClothModel } from './options.js';
@@ -45,4 +46,13 @@ export class Garment {
     this.cloth.dispose();
     this.cloth.model.dispose();
   }
+}
+
+/** The same error, of which the message names the garment. */
+export function about(garment: string, error: unknown): unknown {
+  if (!(error instanceof Error)) return error;
+  // What others call a code is none of ours. Not by class: a page may have a package twice.
+  const { code = 'garment', status, joint, joints } = (error.name === 'CtsnError' ? error : {}) as Partial<CtsnError>;
+  const details = { ...(status !== undefined && { status }), ...(joint !== undefined && { joint }), ...(joints && { joints }) };
+  return new CtsnError(code, `garment "${garment}": ${error.message}`, { ...details, cause: error });
 }

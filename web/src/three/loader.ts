@@ -45,13 +45,15 @@ export class ClothLoader<M extends ClothModel = CpuClothModel> extends Loader<M>
     onError?: (error: unknown) => void,
   ): void {
     const address = this.manager.resolveURL(this.path + url);
-    const credentials = this.withCredentials ? 'include' : 'same-origin';
+    const { requestHeader: headers, withCredentials } = this;
+    const own = withCredentials || Object.keys(headers).length > 0;
     const options = {
       ...this.#wasm,
       backend: this.#backend,
       device: this.#device,
       cache: this.#storage,
-      request: { headers: this.requestHeader, credentials } satisfies RequestInit,
+      // A way of its own to ask is shared with nobody, and takes nothing that was preloaded.
+      request: own ? ({ headers, credentials: withCredentials ? 'include' : 'same-origin' } satisfies RequestInit) : undefined,
       signal: this.#signal(),
       onProgress: (progress: Progress) => onProgress?.(toEvent(progress)),
     };

@@ -40,7 +40,7 @@ export class ClothScheduler {
   budget: number;
 
   readonly #places: Place[] = [];
-  readonly #costs = new Map<AnyClothModel, Cost>();
+  readonly #costs = new WeakMap<AnyClothModel, Cost>();
   readonly #frustum = /* @__PURE__ */ new Frustum();
   readonly #view = /* @__PURE__ */ new Matrix4();
   readonly #sphere = /* @__PURE__ */ new Sphere();
@@ -111,11 +111,21 @@ export class ClothScheduler {
     return size * (1 + Math.min(motion / LIVELY, 1)) * (quality === 'full' ? LOYALTY : 1);
   }
 
-  /** Decides every cloth's quality: all are skinned, and what that leaves is spent in order, first on all drapes. */
+  /**
+   * Decides every cloth's quality: all are skinned, and what that leaves is spent in order, first on all drapes. Those
+   * on a GPU are full, and take none of it.
+   */
   #share(): void {
     let left = this.budget;
-    for (const { cloth, importance } of this.#places) if (importance > 0) left -= this.#cost(cloth).skinned ?? 0;
+    for (const { cloth, importance } of this.#places) {
+      if (importance > 0 && cloth.backend === 'cpu') left -= this.#cost(cloth).skinned ?? 0;
+    }
     for (const place of this.#places) {
+      if (place.cloth.backend !== 'cpu') {
+        place.quality = 'full';
+        place.every = 1;
+        continue;
+      }
       const { skinned = 0, coarse = skinned } = this.#cost(place.cloth);
       const extra = coarse - skinned;
       place.quality = place.importance > 0 && extra <= left ? 'coarse' : 'skinned';

@@ -4,7 +4,7 @@ import { loadModel, preload, type LoadOptions, type ModelSource } from '../load.
 import type { Quality } from '../quality.js';
 import type { Character } from './bones.js';
 import { Cloth } from './cloth.js';
-import { Garment } from './garment.js';
+import { about, Garment } from './garment.js';
 import { Ghosts } from './ghost.js';
 import { drawNearer } from './layer.js';
 import { checkCharacter, is, refusal, type AnyClothModel, type ClothOptions } from './options.js';
@@ -21,6 +21,8 @@ export interface WardrobeOptions<Name extends string = string> extends ClothOpti
   material: Material | ((garment: Name) => Material);
   /** Loads a model; `loadModel` if not given. The place for a backend, a device, or the models of `ctsn/worker`. */
   load?: ((source: ModelSource, options: WearOptions) => Promise<AnyClothModel>) | undefined;
+  /** Fetches a model's file ahead, so that `load` finds it; `preload` if not given. */
+  prefetch?: ((source: string | URL) => Promise<unknown>) | undefined;
   /** Seconds that a change takes; 0: none. A third of a second if not given. */
   fade?: number | undefined;
   /**
@@ -98,11 +100,16 @@ export class Wardrobe<Name extends string = string> extends Group {
     return this as unknown as Wardrobe<Name | More>;
   }
 
-  /** Fetches a garment's file before it is wanted. */
+  /** Fetches a garment's file before it is wanted: nothing, where it is worn or on its way. */
   async prefetch(garment: Name): Promise<void> {
     const source = this.#source(garment);
-    if (typeof source !== 'string' && !(source instanceof URL)) return;
-    await preload(source).catch(named(garment));
+    const { prefetch = preload } = this.#options;
+    if (this.#wanted.includes(garment) || (typeof source !== 'string' && !(source instanceof URL))) return;
+    try {
+      await prefetch(source);
+    } catch (error) {
+      throw about(garment, error);
+    }
   }
 
   /**
@@ -213,6 +220,8 @@ export class Wardrobe<Name extends string = string> extends Group {
 
   /** Begins to show what is there now, and to take off what is not wanted any more. */
   #change(names: readonly string[]): void {
+    // A page that draws on demand may have had no reason to for long.
+    this.#last = performance.now();
     const bare = ![...this.#garments.values()].some(({ share }) => share > 0);
     for (const [name, garment] of this.#garments) {
       garment.wanted = names.includes(name);
@@ -281,18 +290,3 @@ function stack(before: readonly string[], wanted: readonly string[]): string[] {
 const openModel = (source: ModelSource, options: WearOptions): Promise<AnyClothModel> => loadModel(source, options);
 
 const refuse = refusal('new Wardrobe(character, garments, options)');
-
-/** Throws an error again, with the garment's name. */
-const named =
-  (garment: string) =>
-  (error: unknown): never => {
-    throw about(garment, error);
-  };
-
-/** The same error, of which the message names the garment. */
-function about(garment: string, error: unknown): unknown {
-  if (!(error instanceof Error)) return error;
-  const { code = 'garment', status, joint, joints } = error as Partial<CtsnError>;
-  const details = { ...(status !== undefined && { status }), ...(joint !== undefined && { joint }), ...(joints && { joints }) };
-  return new CtsnError(code, `garment "${garment}": ${error.message}`, { ...details, cause: error });
-}

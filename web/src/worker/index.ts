@@ -1,5 +1,5 @@
 /** `ctsn` with everything computed in a worker of its own: neither a load nor a prediction holds the page up. */
-import { until } from '../arrival.js';
+import { follow, until } from '../arrival.js';
 import type { LoadOptions, ModelSource, WasmSources } from '../load.js';
 import { CtsnError } from '../error.js';
 import { WorkerClothModel } from './model.js';
@@ -16,31 +16,42 @@ export { WorkerClothModel, type WorkerPredictOptions } from './model.js';
 let port: Port | undefined;
 
 /**
- * Loads a model in the page's worker, which the first call starts. Everything of `options` goes there; a signal or
- * progress is heard here. Addresses are the page's.
+ * Loads a model in the page's worker, which the first call starts. Everything of `options` goes there; signals and
+ * progress are heard here. Addresses are the page's.
  */
 export async function loadModel(source: ModelSource, options: LoadOptions = {}): Promise<WorkerClothModel> {
-  const { signal, onProgress, ...rest } = options;
-  signal?.throwIfAborted();
+  const { signal, onProgress, request, ...rest } = options;
+  const signals = [signal, request?.signal];
+  for (const given of signals) given?.throwIfAborted();
   if (!port || port.broken) port = new Port();
   const to = port;
   let call = 0;
   const load = to.ask<Extract<Answer, { loaded: object }>>(
-    { type: 'load', source: absolute(source), options: { ...rest, ...absoluteModules(rest) } },
+    { type: 'load', source: absolute(source), options: { ...rest, ...absoluteModules(rest), request: plain(request) } },
     [],
     onProgress,
     (number) => (call = number),
   );
+  const { end, done } = follow(signals);
   try {
-    return new WorkerClothModel(to, (await until(signal, load)).loaded);
+    return new WorkerClothModel(to, (await until(end.signal, load)).loaded);
   } catch (error) {
-    if (signal?.aborted) {
+    if (end.signal.aborted) {
       to.tell({ call, type: 'abort' });
       // It may have come meanwhile.
       load.then(({ loaded }) => to.tell({ call: 0, type: 'dispose', model: loaded.model })).catch(() => undefined);
     }
     throw error;
+  } finally {
+    done();
   }
+}
+
+/** How to ask for a file, as far as it can be posted. */
+function plain(request: RequestInit | undefined): RequestInit | undefined {
+  if (!request) return undefined;
+  const { signal: _, headers, ...rest } = request;
+  return { ...rest, headers: [...new Headers(headers)] };
 }
 
 /** An address that means the same in the worker, or bytes, which are copied on their way. */

@@ -48,8 +48,9 @@ export class Port {
     if (this.#broken) return Promise.reject(this.#broken);
     const call = ++this.#calls;
     return new Promise<Wanted>((resolve, reject) => {
-      this.#waiting.set(call, { resolve: resolve as (answer: Answer) => void, reject, onProgress });
+      // It throws for what cannot be posted: then there is nothing to wait for.
       this.#worker.postMessage({ ...question, call }, { transfer });
+      this.#waiting.set(call, { resolve: resolve as (answer: Answer) => void, reject, onProgress });
       begun?.(call);
     });
   }

@@ -7,35 +7,53 @@ export class Rail {
   onGarment: (garment: GarmentEntry) => void = () => {};
   /** Called when a garment is likely to be picked next. */
   onNear: (garment: GarmentEntry) => void = () => {};
+  readonly #figures = new Tiles<Figure>('figures', (figure) => tile(figure, () => this.onFigure(figure)));
+  readonly #garments = new Tiles<GarmentEntry>('garments', (garment) => {
+    const button = tile(garment, () => this.onGarment(garment));
+    for (const event of ['pointerenter', 'focus']) button.addEventListener(event, () => this.onNear(garment));
+    return button;
+  });
 
   /** Shows what there is, and what of it is chosen. */
   show(cast: readonly Figure[], figure: Figure, worn: readonly GarmentEntry[]): void {
-    const figures = cast.map((one) => tile(one, one === figure, () => this.onFigure(one)));
     // One figure is nothing to choose from.
     element('figures').parentElement!.hidden = cast.length < 2;
-    replace(element('figures'), figures);
-    const garments = figure.garments.map((garment) => {
-      const button = tile(garment, worn.includes(garment), () => this.onGarment(garment));
-      button.addEventListener('pointerenter', () => this.onNear(garment));
-      button.addEventListener('focus', () => this.onNear(garment));
-      return button;
-    });
-    replace(element('garments'), garments);
+    this.#figures.show(cast, [figure]);
+    this.#garments.show(figure.garments, worn);
   }
 }
 
-/** Puts new tiles in the place of the old; who was on one with the keyboard stays there. */
-function replace(list: HTMLElement, tiles: readonly HTMLButtonElement[]): void {
-  const at = [...list.children].indexOf(document.activeElement!);
-  list.replaceChildren(...tiles);
-  if (at >= 0) tiles[at]?.focus({ preventScroll: true });
+/** A list of tiles. They stay as long as what they stand for: one that is pressed, or focused, is not replaced. */
+class Tiles<T> {
+  readonly #list: HTMLElement;
+  readonly #make: (one: T) => HTMLButtonElement;
+  readonly #tiles = new Map<T, HTMLButtonElement>();
+
+  constructor(id: string, make: (one: T) => HTMLButtonElement) {
+    this.#list = element(id);
+    this.#make = make;
+  }
+
+  show(all: readonly T[], chosen: readonly T[]): void {
+    for (const [one, button] of this.#tiles) {
+      if (all.includes(one)) continue;
+      button.remove();
+      this.#tiles.delete(one);
+    }
+    all.forEach((one, i) => {
+      const button = this.#tiles.get(one) ?? this.#make(one);
+      const there = this.#list.children[i] ?? null;
+      this.#tiles.set(one, button);
+      if (there !== button) this.#list.insertBefore(button, there);
+      button.setAttribute('aria-pressed', String(chosen.includes(one)));
+    });
+  }
 }
 
-function tile({ name, picture }: Figure | GarmentEntry, chosen: boolean, onClick: () => void): HTMLButtonElement {
+function tile({ name, picture }: Figure | GarmentEntry, onClick: () => void): HTMLButtonElement {
   const button = document.createElement('button');
   button.type = 'button';
   button.className = 'tile';
-  button.setAttribute('aria-pressed', String(chosen));
   const image = picture ? new Image() : document.createElement('b');
   if (image instanceof HTMLImageElement) Object.assign(image, { src: picture, alt: '', width: 120, height: 150 });
   else image.textContent = name.slice(0, 1);

@@ -49,11 +49,11 @@ export class Rivals extends Group {
   /** Moves the rivals of what is worn to where the bones are; `moment`: what was simulated of it. */
   update({ worn, character }: Dressed, moment: Moment | undefined): void {
     const { rival } = this;
-    const wanted = rival === 'none' ? [] : worn.map(({ cloth }) => cloth);
-    if (wanted.length !== this.#cloths.length || wanted.some((cloth, i) => this.#cloths[i]!.of !== cloth)) {
+    const wanted = rival === 'none' ? [] : worn;
+    if (wanted.length !== this.#cloths.length || wanted.some(({ cloth }, i) => this.#cloths[i]!.of !== cloth)) {
       this.#clear();
-      this.#cloths = wanted.map((of) => {
-        const cloth = new Cloth<Material>(of.model, character.scene, of.material);
+      this.#cloths = wanted.map(({ cloth: of, material }) => {
+        const cloth = new Cloth<Material>(of.model, character.scene, material);
         cloth.castShadow = cloth.receiveShadow = true;
         cloth.onBeforeRender = of.onBeforeRender;
         cloth.onAfterRender = of.onAfterRender;
@@ -67,7 +67,6 @@ export class Rivals extends Group {
       // What nobody simulated is as the network has it.
       cloth.quality = rival === 'truth' ? 'full' : (rival as Quality);
       cloth.blend = 0;
-      cloth.material = of.material;
       hem.thick = worn[i]!.hem.thick;
       cloth.update();
       hem.update();

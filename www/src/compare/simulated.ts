@@ -43,25 +43,39 @@ export class Simulated {
   /** Lets be chosen what can be shown. What cannot be shown any more gives way to nothing. */
   offer(dressed: Dressed): void {
     const there = dressed.worn.some(({ entry }) => entry.truth);
-    for (const [name, value] of CONTROLS) {
-      const control = button(name, value);
-      control.disabled = !there;
-      if (!there && control.checked) button(name, 'none').click();
-    }
+    for (const [name, value] of CONTROLS) button(name, value).disabled = !there;
+    if (!there) this.#leave();
     if (there && this.wanted && !dressed.worn.some(({ entry }) => this.#loaded.has(entry))) this.onWanted();
   }
 
-  /** Fetches the frames of what is worn, and goes where they are. */
+  /** Fetches the frames of what is worn, and goes where they are, if it is worn still. */
   async seek(dressed: Dressed): Promise<void> {
     const entry = dressed.worn.find(({ entry }) => entry.truth)?.entry;
     if (!entry) return;
     let fetched = this.#truths.get(entry);
     if (!fetched) this.#truths.set(entry, (fetched = Truth.fetch(entry.truth!)));
     element('status').textContent = 'Fetching what was simulated';
-    const truth = await fetched.finally(() => (element('status').textContent = ''));
-    this.#loaded.set(entry, truth);
+    const isWorn = () => dressed.worn.some((worn) => worn.entry === entry);
+    try {
+      this.#loaded.set(entry, await fetched);
+    } catch (error) {
+      // The next who wants them asks again.
+      this.#truths.delete(entry);
+      if (!isWorn()) return;
+      this.#leave();
+      throw error;
+    } finally {
+      element('status').textContent = '';
+    }
+    if (!isWorn()) return;
+    const truth = this.#loaded.get(entry)!;
     if (truth.nearest(dressed.character.clip, 0) === undefined) this.onSeek(truth.frames[0]!);
     this.onChange();
+  }
+
+  /** Gives way to nothing. */
+  #leave(): void {
+    for (const [name, value] of CONTROLS) if (button(name, value).checked) button(name, 'none').click();
   }
 
   /** Poses the figure as in the simulated frame that is nearest to its clock. */

@@ -1,16 +1,18 @@
 import type { ClothModel, Quality } from 'ctsn';
 import { Cloth, ClothScheduler } from 'ctsn/three';
-import { AnimationMixer, Fog, NeutralToneMapping, PerspectiveCamera, Scene, SkinnedMesh } from 'three';
+import { AnimationMixer, Fog, MathUtils, NeutralToneMapping, PerspectiveCamera, Scene, SkinnedMesh, Spherical } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { clone } from 'three/addons/utils/SkeletonUtils.js';
 import type { GarmentEntry } from '../cast/catalogue.js';
 import { FabricMaterial } from '../fabric/material.js';
 import type { Character } from '../figure/character.js';
+import { wayOf } from '../stage/keys.js';
 import { createStudio, createSun } from '../stage/light.js';
 import type { createRenderer } from './renderer.js';
 
-/** Metres between neighbours. */
+/** Metres between neighbours, and of somebody's height. */
 const APART = 1.5;
+const HEIGHT = 1.8;
 const COLOURS = ['#3f6482', '#8a4b3c', '#4f6b4a', '#7a6a8a', '#b08a3e'];
 
 /** Whom to show, and in what. */
@@ -51,6 +53,7 @@ export class Crowd {
     for (let i = 0; i < count; i++) this.#place(pairs[i % pairs.length]!, i, columns, Math.floor(i / pairs.length));
     this.scheduler.add(...this.#cloths);
     new ResizeObserver(() => this.#resize(canvas)).observe(canvas);
+    canvas.addEventListener('keydown', (event) => this.#press(event));
     this.#resize(canvas);
   }
 
@@ -103,6 +106,19 @@ export class Crowd {
       fabric.normalMap = fabric.aoMap = null;
     }
     return fabric;
+  }
+
+  /** The next frame keeps the camera within the controls' bounds. */
+  #press(event: KeyboardEvent): void {
+    const way = wayOf(event);
+    if (!way) return;
+    event.preventDefault();
+    const [around, up, far, lift] = way;
+    const { target } = this.#controls;
+    const at = new Spherical().setFromVector3(this.#camera.position.sub(target));
+    at.set(far * at.radius, at.phi - MathUtils.degToRad(up), at.theta + MathUtils.degToRad(around)).makeSafe();
+    target.y += lift * HEIGHT;
+    this.#camera.position.setFromSpherical(at).add(target);
   }
 
   #resize(canvas: HTMLCanvasElement): void {

@@ -56,12 +56,21 @@ async function start(): Promise<void> {
   for (const input of [budget, ...radios]) input.addEventListener('input', choose);
   choose();
 
+  const pause = element('pause');
+  let playing: boolean;
+  const play = (on: boolean) => {
+    playing = on;
+    pause.textContent = on ? 'Pause' : 'Play';
+  };
+  pause.addEventListener('click', () => play(!playing));
+  play(!matchMedia('(prefers-reduced-motion: reduce)').matches);
+
   hook.ready = true;
   let last: number | undefined;
   crowd.renderer.setAnimationLoop((now: number) => {
     const seconds = Math.min((now - (last ?? now)) / 1000, 0.1);
     last = now;
-    crowd.frame(seconds);
+    crowd.frame(playing ? seconds : 0);
     meter.add(crowd.scheduler.spent);
     const { tally } = crowd.scheduler;
     Object.assign(hook, { frames: meter.count, milliseconds: meter.median, tally, zeroCopy: crowd.zeroCopy });

@@ -1,4 +1,4 @@
-import { AnimationMixer, Bone, SkinnedMesh, type AnimationAction, type AnimationClip, type Group, type Object3D } from 'three';
+import { AnimationMixer, Bone, Mesh, SkinnedMesh, Texture, type AnimationAction, type AnimationClip, type Group, type Object3D } from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 
 /** Frames of a clip per second, wherever this page counts them. */
@@ -95,11 +95,17 @@ export class Character {
   /** Frees what its file brought. */
   dispose(): void {
     this.#mixer.stopAllAction();
-    for (const { geometry, material, skeleton } of this.meshes) {
+    for (const { skeleton } of this.meshes) skeleton.dispose();
+    // Shoes and hair may hang from a bone, without weights.
+    this.scene.traverse((object) => {
+      if (!(object instanceof Mesh)) return;
+      const { geometry, material } = object as Mesh;
       geometry.dispose();
-      skeleton.dispose();
-      for (const one of [material].flat()) one.dispose();
-    }
+      for (const one of [material].flat()) {
+        for (const value of Object.values(one)) if (value instanceof Texture) value.dispose();
+        one.dispose();
+      }
+    });
     this.scene.removeFromParent();
   }
 

@@ -6,7 +6,7 @@ import { fabrics, type Look } from '../fabric/fabrics.js';
 import { Hem } from '../fabric/hem.js';
 import { FabricMaterial, projectFront, type Picture } from '../fabric/material.js';
 import type { Character } from './character.js';
-import { cacheOf } from './fetch.js';
+import { cacheOf, fetchModel } from './fetch.js';
 
 /** A garment as it is worn. */
 export interface Worn {
@@ -52,6 +52,7 @@ export class Dressed {
         model.complete.then(() => this.#move(model)).catch((error: unknown) => model.disposed || this.onFailure(error));
         return model;
       },
+      prefetch: fetchModel,
     });
     this.wardrobe.castShadow = this.wardrobe.receiveShadow = true;
   }

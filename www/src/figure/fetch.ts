@@ -1,12 +1,16 @@
 import { preload, type ModelSource, type Progress } from 'ctsn';
 import type { Figure, GarmentEntry } from '../cast/catalogue.js';
+import { isOwn } from '../cast/own.js';
 
-/** Where a model's file is kept for the next visit; what was dropped on the page is kept by nobody. */
-export const cacheOf = (source: ModelSource) => (String(source).startsWith('blob:') ? undefined : 'ctsn');
+/** Where a model's file is kept for the next visit. */
+export const cacheOf = (source: ModelSource) => (isOwn(source) ? undefined : 'ctsn');
+
+/** Has a model's file come before it is wanted, to where it is looked for then. */
+export const fetchModel = (source: string | URL) => preload(source, { cache: cacheOf(source) });
 
 /** Has the models of garments come beside the figure. Where one cannot be had, whoever puts it on is told. */
 export function fetchModels(garments: readonly GarmentEntry[]): void {
-  for (const { file } of garments) void preload(file, { cache: cacheOf(file) }).catch(() => undefined);
+  for (const { file } of garments) void fetchModel(file).catch(() => undefined);
 }
 
 /** The file of a figure [bytes]. */

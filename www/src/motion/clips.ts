@@ -53,7 +53,7 @@ export class Clips {
     const { dressed, stage } = this.#page;
     const { character } = dressed;
     // A pose of one's own would be lost; what comes late from a GPU would be of another pose.
-    const free = !stage.isSketching && !('own' in (this.#page.scene.pose ?? {})) && dressed.models.every(({ backend }) => backend === 'cpu');
+    const free = !stage.isSketching && !this.#page.isPosed && dressed.models.every(({ backend }) => backend === 'cpu');
     const next = this.#waiting[0];
     if (!next || !free || !this.#room.open || character !== this.#of) return;
     this.#waiting.shift();

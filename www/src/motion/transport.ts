@@ -11,7 +11,7 @@ export class Transport {
   readonly #play = element<HTMLButtonElement>('play');
   readonly #time = element<HTMLInputElement>('time');
   readonly #clip = element<HTMLSelectElement>('clip');
-  readonly #clock = element<HTMLOutputElement>('clock');
+  readonly #clock = element('clock');
 
   constructor() {
     const speed = element<HTMLSelectElement>('speed');
@@ -49,7 +49,7 @@ export class Transport {
     this.#clip.value = clip;
     this.#time.max = String(duration);
     this.#time.value = String(time);
-    this.#clock.value = clip ? `${time.toFixed(2)} s of ${duration.toFixed(2)} s` : '';
+    this.#clock.textContent = clip ? `${time.toFixed(2)} s of ${duration.toFixed(2)} s` : '';
   }
 }
 

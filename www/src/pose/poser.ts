@@ -1,5 +1,6 @@
 import { Plane, Raycaster, Vector2, Vector3, type Object3D } from 'three';
 import { element } from '../dom.js';
+import { isShortcut } from '../stage/keys.js';
 import type { Stage } from '../stage/stage.js';
 import { findHandles, type Handle } from './limbs.js';
 
@@ -75,7 +76,7 @@ export class Poser {
     });
     button.addEventListener('keydown', (event) => {
       const arrow = arrows[event.key];
-      if (!arrow) return;
+      if (!arrow || isShortcut(event)) return;
       event.preventDefault();
       this.onStart();
       const { camera, height } = this.#stage;

@@ -11,6 +11,7 @@ import {
 } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { Floor } from './floor.js';
+import { wayOf } from './keys.js';
 import { createStudio, createSun } from './light.js';
 import { Sketch } from './sketch.js';
 
@@ -35,17 +36,6 @@ export interface View {
 const FIELD = 28;
 /** Milliseconds that the first drawing with a program of a sketch may take. Software takes 200 to 400. */
 const SLOW = 100;
-/** Degrees around and up, a factor of the distance, and heights up. */
-const KEYS: Readonly<Record<string, readonly [number, number, number, number]>> = {
-  ArrowLeft: [-10, 0, 1, 0],
-  ArrowRight: [10, 0, 1, 0],
-  ArrowUp: [0, 6, 1, 0],
-  ArrowDown: [0, -6, 1, 0],
-  '+': [0, 0, 0.85, 0],
-  '-': [0, 0, 1.18, 0],
-  PageUp: [0, 0, 1, 0.1],
-  PageDown: [0, 0, 1, -0.1],
-};
 /** As far above and below its middle as a figure is looked at, in its heights. */
 const LIFT = 0.5;
 
@@ -259,9 +249,8 @@ export class Stage {
     target.copy(wanted);
   }
 
-  /** Arrows turn the camera, the keys for pages lift it, plus and minus bring it closer and away. */
   #press(event: KeyboardEvent): void {
-    const way = KEYS[event.key];
+    const way = wayOf(event);
     if (!way) return;
     event.preventDefault();
     const { around, up, far, lift } = this.view;

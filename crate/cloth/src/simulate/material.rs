@@ -84,11 +84,6 @@ impl Material {
         FABRICS.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ")
     }
 
-    /// `(D / ρg)^(1/3)` in metres: how far the cloth stands out before its weight bends it.
-    pub fn bending_length(&self) -> f64 {
-        (self.bending / (self.density * GRAVITY)).cbrt()
-    }
-
     /// Checks that every constant is finite and in its range.
     pub(super) fn check(&self) -> Result<()> {
         let fields = [

@@ -84,11 +84,9 @@ impl Field {
     /// First and last voxel, per axis, of what is inside and as much around it as smoothing and what hangs need.
     pub fn bounds(&self, solid: &Solid) -> [[usize; 3]; 2] {
         let margin = 2 + ((3.0 * solid.smoothing + solid.room) / self.cell) as usize;
-        let [nx, ny, _] = self.size;
-        let place = |i: usize| [i % nx, i / nx % ny, i / (nx * ny)];
         let (mut low, mut high) = (self.size, [0; 3]);
         for i in (0..self.values.len()).filter(|&i| self.values[i] < 0.0) {
-            let place = place(i);
+            let place = self.place(i);
             (low, high) = ([0, 1, 2].map(|k| low[k].min(place[k])), [0, 1, 2].map(|k| high[k].max(place[k])));
         }
         let low = [0, 1, 2].map(|k| low[k].min(high[k]).saturating_sub(margin));
@@ -109,10 +107,16 @@ impl Field {
         (self.origin, self.size) = (self.point(bounds[0]), [0, 1, 2].map(|k| bounds[1][k] - bounds[0][k] + 1));
     }
 
+    /// Where voxel `i` is on the grid. (Millions are asked for, and halves of 64 bits divide in a third of the time.)
+    pub fn place(&self, i: usize) -> [usize; 3] {
+        let ([nx, ny, _], i) = (self.size.map(|count| count as u32), i as u32);
+        let rows = i / nx;
+        [i % nx, rows % ny, rows / ny].map(|place| place as usize)
+    }
+
     /// The up to six voxels next to voxel `i`.
     pub fn neighbours(&self, i: usize) -> impl Iterator<Item = usize> {
-        let [nx, ny, nz] = self.size;
-        let (x, y, z) = (i % nx, i / nx % ny, i / (nx * ny));
+        let ([nx, ny, nz], [x, y, z]) = (self.size, self.place(i));
         let steps = [
             (x > 0).then(|| i - 1),
             (x + 1 < nx).then(|| i + 1),
@@ -131,7 +135,8 @@ impl Field {
         let half = (((1.0 + 4.0 * variance).sqrt() - 1.0) / 2.0).round() as usize;
         let [nx, ny, nz] = self.size;
         for (count, stride) in [(nx, 1), (ny, nx), (nz, nx * ny)] {
-            let starts: Vec<usize> = (0..self.values.len()).filter(|i| i / stride % count == 0).collect();
+            let blocks = (0..self.values.len()).step_by(count * stride);
+            let starts: Vec<usize> = blocks.flat_map(|block| block..block + stride).collect();
             let values = &self.values;
             let lines: Vec<Vec<f32>> = starts
                 .par_iter()

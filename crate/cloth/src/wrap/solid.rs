@@ -93,13 +93,9 @@ impl Field {
     /// Voxels inside the covered part of the body: not reached from the grid's rim through voxels farther than `wall`
     /// from the body. Deep voxels take the label of the nearest one that has seen a triangle.
     pub(super) fn interior(&self, near: &mut [Near], wall: f64) -> Vec<bool> {
-        let [nx, ny, nz] = self.size;
         let reach = near.iter().fold(0.0_f32, |reach, near| reach.max(near.body));
         let mut outside = vec![false; near.len()];
-        let on_rim = |i: usize| {
-            let (x, y, z) = (i % nx, i / nx % ny, i / (nx * ny));
-            x == 0 || y == 0 || z == 0 || x + 1 == nx || y + 1 == ny || z + 1 == nz
-        };
+        let on_rim = |i: usize| self.place(i).iter().zip(&self.size).any(|(&at, &count)| at == 0 || at + 1 == count);
         let mut queue: Vec<usize> = (0..near.len()).filter(|&i| on_rim(i)).collect();
         queue.iter().for_each(|&i| outside[i] = true);
         while let Some(i) = queue.pop() {

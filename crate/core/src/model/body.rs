@@ -8,6 +8,9 @@ use crate::Result;
 use crate::file::Tensors;
 use glam::Vec3;
 
+/// Most triangles around a vertex: the search for the closest point walks around vertices, for each of the cloth's.
+const MOST_AROUND: u32 = 256;
+
 /// The body's mesh, and where each cloth vertex looks for it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Body<B, I> {
@@ -92,7 +95,14 @@ impl Body<Vec<f32>, Vec<u32>> {
             let tensor = if width == 0 { "body.weights" } else { "body.seeds" }.to_owned();
             return Err(crate::Error::Shape { tensor, wanted, found: "none".to_owned() });
         }
-        Ok(Some(Self::new(rest, Skinning { joints: slots, weights, width }, triangles, seeds)))
+        let body = Self::new(rest, Skinning { joints: slots, weights, width }, triangles, seeds);
+        let around = body.fans.offsets.windows(2).map(|row| row[1] - row[0]);
+        match around.enumerate().find(|(_, around)| *around > MOST_AROUND) {
+            Some((vertex, found)) => Err(crate::Error::NotModel(format!(
+                "body.triangles: wanted at most {MOST_AROUND} around a vertex, found {found} around {vertex}"
+            ))),
+            None => Ok(Some(body)),
+        }
     }
 
     /// Adds it to the file of a model of `n` cloth vertices.

@@ -1,7 +1,7 @@
 //! Model file -> model, checking every name, shape and index. network.md §8.
 
 use super::{Body, Cut, HostModel, Layer, Linear, Model, Reference, Ride, Sizes, Skinning, Surface, pack};
-use super::{CLOTH_WEIGHTS, MESH_BASIS, SKELETON_BASIS, STEPS};
+use super::{CLOTH_WEIGHTS, MESH_BASIS, MOST_STEPS, SKELETON_BASIS, STEPS};
 use crate::error::{Decimal, Error, Result};
 use crate::file::Tensors;
 use crate::pose::{Frame, Range, Rig, Transform};
@@ -22,6 +22,10 @@ pub(super) struct Description {
     /// Steps of the polish; older files lack it.
     pub polish: Option<u32>,
 }
+
+/// Most numbers that the intermediate results of one prediction may hold: a gigabyte. A few rows of weights could ask
+/// for more than there is.
+const MOST_NUMBERS: usize = 1 << 28;
 
 impl HostModel {
     /// Reads a model file; nothing in it is trusted.
@@ -56,8 +60,18 @@ impl HostModel {
                 layers.len()
             )));
         }
+        let vertex_mlp = mlp(file, "vertex", features, Some(k))?;
+        let widths = vertex_mlp.iter().map(|layer| layer.outputs);
+        let width = widths.fold((4 + 1 + layers.len()).saturating_mul(features), usize::saturating_add);
+        if n.saturating_mul(width) > MOST_NUMBERS {
+            let wanted = format!("wanted at most {MOST_NUMBERS} numbers between the layers");
+            return Err(Error::NotModel(format!("{wanted}, found {width} for each of {n} vertices")));
+        }
         let surface = surface(file, Ride::count(file)?.unwrap_or(n))?;
         let steps = description.polish.map_or(STEPS, |steps| steps as usize);
+        if steps > MOST_STEPS {
+            return Err(Error::NotModel(format!("polish: wanted at most {MOST_STEPS} steps, found {steps}")));
+        }
         Ok(Model {
             sizes: Sizes { vertices: n, joints, embedding: m, basis: k, features, heads },
             cut: Cut::read(file, n, &graph, steps)?,
@@ -69,7 +83,7 @@ impl HostModel {
             embedding,
             skeleton_basis,
             layers,
-            vertex_mlp: mlp(file, "vertex", features, Some(k))?,
+            vertex_mlp,
             mesh_stream: mesh_basis.iter().any(|value| *value != 0.0),
             mesh_basis,
             ride: Ride::read(file, n, surface.as_ref())?,
@@ -198,7 +212,10 @@ fn linear(file: &Tensors, name: &str, inputs: Option<usize>, outputs: Option<usi
 
 /// How many layers `{name}.0`, `{name}.1`, … there are; a layer is there if any part of it is.
 fn count(file: &Tensors, name: &str) -> usize {
-    let any = |i: &usize| file.tensors.keys().any(|key| key.starts_with(&format!("{name}.{i}.")));
+    let any = |i: &usize| {
+        let prefix = format!("{name}.{i}.");
+        file.tensors.range(prefix.clone()..).next().is_some_and(|(key, _)| key.starts_with(&prefix))
+    };
     (0..).take_while(any).count()
 }
 
@@ -249,7 +266,7 @@ fn layer(file: &Tensors, l: usize, inputs: usize) -> Result<Layer<Vec<f32>>> {
 
 /// What draws a mesh of `n` vertices: the cloth, or what rides on it.
 fn surface(file: &Tensors, n: usize) -> Result<Option<Surface>> {
-    if !file.tensors.contains_key("draw.vertex") {
+    if !["draw.vertex", "draw.uv", "draw.triangles"].iter().any(|name| file.tensors.contains_key(*name)) {
         return Ok(None);
     }
     let vertex = file.u32("draw.vertex", &[None], n)?;

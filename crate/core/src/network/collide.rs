@@ -40,7 +40,7 @@ impl<B> Collision<B> {
 }
 
 /// Puts the body, which cloth is kept out of, in its pose; nothing happens where the model has none.
-pub(crate) fn stand<D: Device>(device: &mut D, model: &DeviceModel<D>, a: &mut Activations<D::Buffer>) {
+pub fn stand<D: Device>(device: &mut D, model: &DeviceModel<D>, a: &mut Activations<D::Buffer>) {
     let (Some(body), Some(c)) = (&model.body, &mut a.collision) else { return };
     expose(device, body, &a.body_frame, Space::World, [&mut c.body, &mut c.normals, &mut c.exposed]);
 }

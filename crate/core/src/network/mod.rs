@@ -8,12 +8,11 @@ mod polish;
 use crate::device::Device;
 use crate::model::{HostModel, Model, Skinning};
 use crate::operation::{self, BodyFrame, Normals, Space};
-pub(crate) use collide::stand;
-pub use collide::{Collision, collide, expose, push};
+pub use collide::{Collision, collide, expose, push, stand};
 pub(crate) use embedding::skeleton;
 pub use graph::graph_layer;
 pub(crate) use graph::mesh;
-pub(crate) use polish::polish;
+pub use polish::polish;
 use std::sync::Arc;
 
 /// Which part of the network runs.

@@ -7,7 +7,7 @@ use crate::operation::{Diffuse, Normals, Polish, Pull};
 use crate::topology::Graph;
 
 /// Nothing happens where the model does not know how the garment was cut. The body stands in its pose already.
-pub(crate) fn polish<D: Device>(device: &mut D, model: &DeviceModel<D>, a: &mut Activations<D::Buffer>) {
+pub fn polish<D: Device>(device: &mut D, model: &DeviceModel<D>, a: &mut Activations<D::Buffer>) {
     let (Some(cut), Some(Polishing { pulls, diffused, moves, near })) = (&model.cut, &mut a.polish) else { return };
     if let (Some(body), Some(c), 1..) = (&model.body, &a.collision, cut.steps) {
         push(device, body, REACH, [&c.exposed, &c.normals, &a.positions], near);

@@ -188,7 +188,7 @@ impl Predictor {
     }
 
     /// What the residuals were worth in the last pose: 1 among the poses seen in training, 0 far from them, where the
-    /// cloth is skinned plainly; always 1 where the model does not say what it has seen.
+    /// garment at rest is skinned with the learned weights; always 1 where the model does not say what it has seen.
     pub fn confidence(&self) -> f32 {
         self.confidence
     }

@@ -28,7 +28,7 @@ pub struct Arguments {
     #[arg(short, long, required_unless_present = "check")]
     output: Option<PathBuf>,
     /// Check this garment instead (glTF)
-    #[arg(long, conflicts_with = "output")]
+    #[arg(long, conflicts_with_all = ["output", "Cut"])]
     check: Option<PathBuf>,
     /// With --check, write what was found as a page with pictures: the garment on the body, faults in colour (HTML)
     #[arg(long, value_name = "FILE", requires = "check")]

@@ -2,7 +2,7 @@
 
 use super::{bar, file_name};
 use crate::packing::{self, BOUND, Difference, Packed, Small, Trial};
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use ctsn_core::file::Tensors;
 use ctsn_core::model::{HostModel, file_bytes};
 use ctsn_rig::{file, gltf};
@@ -41,11 +41,18 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> Result<()> {
+    let alone = |what: &str| {
+        let wanted = "wanted no second file and no --report, which are for models";
+        ensure!(arguments.character.is_none() && !arguments.report, "{}: {what}; {wanted}", arguments.file.display());
+        Ok(())
+    };
     if arguments.file.is_dir() {
+        alone("is a dataset")?;
         return frames(arguments);
     }
     let before = file::read(&arguments.file)?;
     if before.starts_with(b"glTF") {
+        alone("is a character")?;
         return character(arguments, before.len());
     }
     let context = || arguments.file.display().to_string();
@@ -63,18 +70,8 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     if arguments.report {
         report(&tensors, &small, &list);
     }
-    let plain = file_bytes(small);
-    let packed = file::gzip(&plain);
-    file::write(&arguments.output, &packed)?;
     let Difference { distance, angle, greatest } = difference;
-    println!(
-        "{}: {} bytes, {} unpacked; before {}",
-        file_name(&arguments.output),
-        packed.len(),
-        plain.len(),
-        before.len()
-    );
-    println!(
+    let said = format!(
         "over {} poses: {:.4} mm and {angle:.4}° in the mean, at most {:.2} mm; wanted {:.1} mm and {:.1}°",
         judge.poses(),
         1e3 * distance,
@@ -82,6 +79,18 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         1e3 * BOUND.0,
         BOUND.1
     );
+    ensure!(difference.within(1.0), "{}: cannot be packed: {said}", arguments.file.display());
+    let plain = file_bytes(small);
+    let packed = file::gzip(&plain);
+    file::write(&arguments.output, &packed)?;
+    println!(
+        "{}: {} bytes, {} unpacked; before {}",
+        file_name(&arguments.output),
+        packed.len(),
+        plain.len(),
+        before.len()
+    );
+    println!("{said}");
     Ok(())
 }
 

@@ -1,7 +1,7 @@
 //! `ctsn polish`: how much a trained model's cloth is polished.
 
 use super::{file_name, model};
-use anyhow::Result;
+use anyhow::{Result, bail};
 use ctsn_core::file::{Dtype, Tensors};
 use ctsn_core::model::{Cut, HostModel, MOST_STEPS, SKELETON_BASIS, STEPS, Storage};
 use ctsn_rig::file;
@@ -41,7 +41,11 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let cut = (*steps > 0).then(|| Cut::new(setup.garment.clone(), &model.graph, *steps)).transpose()?;
     // Learned tensors stay as they are stored.
     let basis = Tensors::parse(&bytes)?.tensors.remove(SKELETON_BASIS).map(|basis| basis.dtype);
-    let storage = if basis == Some(Dtype::F16) { Storage::F16 } else { Storage::F32 };
+    let storage = match basis {
+        Some(Dtype::F16) => Storage::F16,
+        Some(Dtype::F32) | None => Storage::F32,
+        Some(_) => bail!("{}: is packed; polish the model that it was made of, then pack", arguments.model.display()),
+    };
     let bytes = HostModel { cut, ..model }.to_bytes(storage);
     file::write(output, &bytes)?;
     println!("{}: {steps} steps, {} bytes", file_name(output), bytes.len());

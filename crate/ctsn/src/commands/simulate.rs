@@ -34,6 +34,10 @@ pub struct Arguments {
     /// Dataset folder
     #[arg(short, long)]
     pub output: PathBuf,
+    /// Relax every pose from what this model of the same garment predicts, not along a path from the canonical drape:
+    /// faster, and of all the ways in which cloth may fold, one that a network can learn
+    #[arg(long, value_name = "MODEL")]
+    pub from: Option<PathBuf>,
     /// Simulate only part i of N, i from 0 to N - 1
     #[arg(long, value_name = "i/N", default_value_t = Shard::WHOLE)]
     pub shard: Shard,
@@ -61,14 +65,14 @@ pub struct Options {
     pub poses: Option<usize>,
     /// Simulate this many mixed poses as well: limbs of some training frames on the trunk of another, every joint
     /// turned further by up to 30°. Variety teaches more than further frames of the same motion. A greater number adds
-    /// to them
-    #[arg(long, value_name = "N", default_value_t = 0)]
-    pub mixed: usize,
+    /// to them. Default: none; `ctsn bake`: two for each frame, of a fine garment one for two
+    #[arg(long, value_name = "N")]
+    pub mixed: Option<usize>,
     /// Simulate this many poses coarsely as well, mixed ones where there are limbs to mix, else frames: a garment of
     /// more than 2,500 vertices thinned to 700, and itself laid on that, in a fraction of the time. The skeleton
-    /// stream learns from them. Wants --from
-    #[arg(long, value_name = "N", default_value_t = 0)]
-    pub coarse: usize,
+    /// stream learns from them. `ctsn simulate` wants --from for it. Default: none; `ctsn bake`: ten for each frame
+    #[arg(long, value_name = "N")]
+    pub coarse: Option<usize>,
     /// Clip to use, by name; may be given several times. Default: all
     #[arg(long = "clip")]
     pub clips: Vec<String>,
@@ -81,10 +85,6 @@ pub struct Options {
     /// Simulate this many poses a second time, every joint turned by half a degree, to measure the noise of the truth
     #[arg(long, value_name = "K", default_value_t = 0)]
     pub noise_floor: usize,
-    /// Relax every pose from what this model of the same garment predicts, not along a path from the canonical drape:
-    /// faster, and of all the ways in which cloth may fold, one that a network can learn
-    #[arg(long, value_name = "MODEL")]
-    pub from: Option<PathBuf>,
     /// Keep poses with at most this share of the vertices inside the body where it passes into itself (an upper arm
     /// into the chest, say): no place is outside there. With 0, few poses are kept of wide motion on slim limbs
     #[arg(long, value_name = "SHARE", default_value_t = PINCHED)]
@@ -95,18 +95,18 @@ pub struct Options {
 }
 
 pub fn run(arguments: &Arguments) -> Result<()> {
-    along(&character(&arguments.character, &arguments.options)?, arguments, None)
+    along(&character(&arguments.character, &arguments.options)?, arguments, None).map(drop)
 }
 
-/// Simulates the clips of this form of the character, beginning no pose after `until`.
-pub fn along(character: &Character, arguments: &Arguments, until: Option<Instant>) -> Result<()> {
-    let Arguments { options, output, shard, .. } = arguments;
+/// Simulates the clips of this form of the character, beginning no pose after `until`; what is in the dataset then.
+pub fn along(character: &Character, arguments: &Arguments, until: Option<Instant>) -> Result<Report> {
+    let Arguments { options, output, shard, from, .. } = arguments;
     let material = Material::named(&options.material)?;
     let mut character = character.clone();
     let garment = fitted(&arguments.garment, &mut character, options.resample)?;
     fine(options, &garment)?;
     let character = &character;
-    let teacher = options.from.as_deref().map(model).transpose()?;
+    let teacher = from.as_deref().map(model).transpose()?;
     let names = [file_name(&arguments.character), file_name(&arguments.garment)];
     println!("{} on {}: {} vertices", names[1], names[0], garment.mesh.positions.len());
     let request = Request {
@@ -118,8 +118,8 @@ pub fn along(character: &Character, arguments: &Arguments, until: Option<Instant
         teacher: teacher.as_ref(),
         shard: *shard,
         poses: options.poses,
-        mixed: options.mixed,
-        coarse: options.coarse,
+        mixed: options.mixed.unwrap_or(0),
+        coarse: options.coarse.unwrap_or(0),
         twins: options.noise_floor,
     };
     let work = Run::new(request, output)?;
@@ -131,7 +131,7 @@ pub fn along(character: &Character, arguments: &Arguments, until: Option<Instant
     if report.kept == 0 && report.missing < report.frames {
         bail!("no pose converged; the reasons stand above");
     }
-    Ok(())
+    Ok(report)
 }
 
 /// Reads a garment, completes the body under it, and says what was mended and what may be wrong.
@@ -144,7 +144,7 @@ fn fitted(path: &Path, character: &mut Character, resample: Resample) -> Result<
 
 /// Whether the garment is one of which poses may be simulated coarsely.
 pub fn fine(options: &Options, garment: &Garment) -> Result<bool> {
-    let (vertices, coarse) = (garment.mesh.positions.len(), options.coarse);
+    let (vertices, coarse) = (garment.mesh.positions.len(), options.coarse.unwrap_or(0));
     let fine = is_fine(vertices);
     ensure!(fine || coarse == 0, "--coarse {coarse}: wanted a garment of more than {FINE} vertices, found {vertices}");
     Ok(fine)

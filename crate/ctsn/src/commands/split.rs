@@ -56,7 +56,6 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         worn.len() < parts.iter().filter(|part| part.skinned).count(),
         "all of its parts are garments: no body is left"
     );
-    std::fs::create_dir_all(folder)?;
     for (name, list) in &garments {
         let (garment, _) = part_character(&arguments.character, arguments.rate, list)?;
         let path = folder.join(format!("{name}.glb"));

@@ -6,7 +6,7 @@ use anyhow::Result;
 use ctsn_rig::file;
 use ctsn_train::dataset::Dataset;
 use ctsn_train::methods::{Entry, Outcome, Study, Table, entries};
-use ctsn_train::training::Settings;
+use ctsn_train::training::{EPOCHS, Settings};
 use std::path::PathBuf;
 
 /// Compare the network with plain skinning, older methods, and itself without some of its parts or in other sizes
@@ -25,7 +25,7 @@ pub struct Arguments {
     #[arg(long, value_enum, value_delimiter = ',')]
     tables: Vec<Table>,
     /// Passes over the training poses
-    #[arg(long, default_value_t = Settings::default().epochs)]
+    #[arg(long, default_value_t = EPOCHS)]
     epochs: usize,
     /// Stop a training after so many epochs without a better validation error
     #[arg(long, default_value_t = Settings::default().patience)]
@@ -41,7 +41,8 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<()> {
     let Arguments { epochs, patience, batch, seed, ref output, .. } = *arguments;
     let dataset = Dataset::read(&arguments.dataset)?;
-    let study = Study::new(&dataset, Settings { epochs, patience, batch, seed, ..Settings::default() }, output)?;
+    let settings = Settings { epochs: Some(epochs), patience, batch, seed, ..Settings::default() };
+    let study = Study::new(&dataset, settings, output)?;
     let tables = if arguments.tables.is_empty() { Table::ALL.to_vec() } else { arguments.tables.clone() };
     let outcomes = outcomes(&study, &entries(&tables), epochs)?;
     let of = |table: &Table| -> (Vec<Entry>, Vec<Outcome>) {

@@ -26,8 +26,8 @@ pub struct Arguments {
     #[arg(requires = "self_supervised")]
     pub garment: Option<PathBuf>,
     /// Learn without simulated poses: by the energy of the predicted cloth, its stretch, bending and weight, and of its
-    /// contact with the body, in the frames of the character's clips and in poses mixed of them. Such cloth lies
-    /// smoother than simulated cloth
+    /// contact with the body, in the frames of the character's clips and in poses mixed of them. Such cloth folds
+    /// more, and finer, than simulated cloth
     #[arg(long, requires = "garment")]
     pub self_supervised: bool,
     /// Train a model to relax poses from (`ctsn simulate --from`): the simulated cloth says where it is, the energy of

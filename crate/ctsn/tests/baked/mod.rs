@@ -75,8 +75,16 @@ fn a_bake_of_too_few_poses_is_refused_before_they_are_simulated() {
 #[test]
 fn a_bake_in_too_little_time_still_makes_a_model() {
     let folder = turning(100);
-    let told = folder.accepts(&format!("{BAKE} --poses 90 --time-budget 1s"));
+    let bake = format!("{BAKE} --poses 90 --time-budget 1s");
+    let told = folder.accepts(&bake);
     // The budget has time for a few; simulated were as many as a training wants, some of which may be left out.
     let kept = ctsn_train::report::Report::new(&folder.path("out.work")).expect("a report").kept;
     assert!((60..90).contains(&kept) && told.contains("unseen frames"), "{kept} kept: {told}");
+    let finished = |told: &str| told.matches("has been simulated already").count();
+    assert_eq!(finished(&folder.accepts(&bake)), 2, "both datasets are kept");
+    std::fs::remove_file(folder.path("out.work/simulated")).expect("what an interrupted step has not written yet");
+    let told = folder.accepts(&bake);
+    assert_eq!(finished(&told), 1, "the step that was interrupted goes on: {told}");
+    std::fs::remove_file(folder.path("out.safetensors")).expect("a model");
+    folder.refuses(&format!("{bake} --material silk"), &["first", "another material", "name: \"silk\""]);
 }

@@ -205,11 +205,10 @@ impl Record for Normals<Id, Id, IndexId> {
     fn record(self, recorder: &mut Recorder) {
         let Self { positions, triangles, normals } = self;
         let n = recorder.length(positions) / 3;
-        let (offsets, corners) = pack::corners(n, recorder.indices(triangles));
         let operands = [
             recorder.rows(positions, 3, 3),
-            recorder.pack(("normal offsets", triangles.0), |_| offsets),
-            recorder.pack(("normal corners", triangles.0), |_| corners),
+            recorder.pack(("normal offsets", triangles.0), |recorder| pack::corners(n, recorder.indices(triangles)).0),
+            recorder.pack(("normal corners", triangles.0), |recorder| pack::corners(n, recorder.indices(triangles)).1),
             recorder.rows(normals, 3, 3),
         ];
         let params = shaders::Normals { vertices: n as u32 };

@@ -95,7 +95,7 @@ impl Look {
 }
 
 /// The words of a name, in lower case: parted by other signs, and where a capital follows a small letter.
-fn words(name: &str) -> Vec<String> {
+pub(super) fn words(name: &str) -> Vec<String> {
     let mut words = vec![String::new()];
     let mut before = ' ';
     for letter in name.chars() {

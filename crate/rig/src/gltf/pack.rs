@@ -82,7 +82,9 @@ fn roles(json: &Value) -> BTreeMap<usize, String> {
             let sampler = &animation["samplers"][size(&channel, "sampler")];
             note(&sampler["input"], ".time");
             let path = channel["target"]["path"].as_str().unwrap_or_default();
-            note(&sampler["output"], &format!(".{path}"));
+            // Of a cubic spline two of three are tangents, of any length.
+            let curved = sampler["interpolation"] == "CUBICSPLINE";
+            note(&sampler["output"], &if curved { "several".to_owned() } else { format!(".{path}") });
         }
     }
     roles

@@ -4,6 +4,7 @@
 
 use super::Read;
 use super::file::File;
+use super::look::words;
 use super::nodes::{Nodes, affine};
 use super::part::Part;
 use crate::{Joint, Pose, SkinWeights};
@@ -215,17 +216,7 @@ fn unique_names(document: &Document, nodes: &[usize]) -> Vec<String> {
 
 /// Whether a word of the name is hip, hips or pelvis, and no word names a side (`LeftHip` is a thigh in some rigs).
 fn names_a_hip(name: &str) -> bool {
-    let mut words = vec![String::new()];
-    let mut before = ' ';
-    for letter in name.chars() {
-        if !letter.is_alphabetic() || (before.is_lowercase() && letter.is_uppercase()) {
-            words.push(String::new());
-        }
-        if let Some(word) = words.last_mut().filter(|_| letter.is_alphabetic()) {
-            word.extend(letter.to_lowercase());
-        }
-        before = letter;
-    }
+    let words = words(name);
     let has = |wanted: &[&str]| words.iter().any(|word| wanted.contains(&word.as_str()));
     has(&["hip", "hips", "pelvis"]) && !has(&["left", "right", "l", "r"])
 }

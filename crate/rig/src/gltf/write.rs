@@ -5,6 +5,7 @@
 use super::vrm;
 use crate::file::write;
 use crate::mesh::{bounds, triangle};
+use crate::path::local;
 use crate::{Character, Clip, Error, Garment, Mesh, Result, SkinWeights, Surface};
 use ::gltf::binary::{Glb, Header};
 use glam::{DAffine3, DMat4, DQuat, DVec3};
@@ -45,7 +46,7 @@ pub fn write_character(path: &Path, character: &Character, appearance: &Appearan
         file.primitives(&character.body.mesh, &character.surface, appearance, Some(&character.body.weights));
     let binds = character.joints.iter().flat_map(|joint| DMat4::from(joint.inverse_bind).to_cols_array());
     let binds = file.floats("MAT4", 16, binds);
-    let rest = locals(character, &character.canonical_pose());
+    let rest = local(character, &character.canonical_pose());
     let mut nodes: Vec<Value> = Vec::new();
     for (index, (joint, local)) in character.joints.iter().zip(&rest).enumerate() {
         let (scale, rotation, translation) = local.to_scale_rotation_translation();
@@ -112,15 +113,6 @@ fn write_cloth(path: &Path, garment: &Garment, generator: &str) -> Result<()> {
         "meshes": [{ "name": "garment", "primitives": primitives }],
     });
     file.save(path, document)
-}
-
-/// Transforms of joints relative to their parents. [joints]
-fn locals(character: &Character, pose: &[DAffine3]) -> Vec<DAffine3> {
-    let relative = |(joint, world): (&crate::Joint, &DAffine3)| match joint.parent {
-        Some(parent) => pose[parent].inverse() * *world,
-        None => *world,
-    };
-    character.joints.iter().zip(pose).map(relative).collect()
 }
 
 /// The binary chunk, and the JSON lists that describe it.
@@ -225,7 +217,7 @@ impl Writer {
         let times: Vec<DVec3> = (0..clip.poses.len()).map(|frame| DVec3::splat(frame as f64 / clip.rate)).collect();
         let input = self.floats("SCALAR", 1, times.iter().map(|time| time.x));
         self.state_bounds(input, &times, 1);
-        let frames: Vec<Vec<DAffine3>> = clip.poses.iter().map(|pose| locals(character, pose)).collect();
+        let frames: Vec<Vec<DAffine3>> = clip.poses.iter().map(|pose| local(character, pose)).collect();
         let (mut channels, mut samplers) = (Vec::new(), Vec::new());
         for joint in 0..character.joints.len() {
             let keys: Vec<(DVec3, DQuat, DVec3)> =

@@ -13,7 +13,7 @@ use crate::{Error, Result};
 use ctsn_core::cpu::Level;
 use ctsn_core::model::HostModel;
 use ctsn_core::{Predictor, Streams};
-use ctsn_rig::vertices;
+use ctsn_rig::{strongest, vertices};
 pub use errors::{Errors, Statistic};
 pub use folds::{FoldErrors, FrameFolds};
 use glam::DVec3;
@@ -77,6 +77,8 @@ pub struct Report {
     pub vertices: usize,
     /// Greatest extent of the canonical body, metres; what `scaled` divides by.
     pub size: f64,
+    /// Whether every pose of the dataset is judged, not the unseen ones alone.
+    pub whole: bool,
     /// Poses the simulation left out of the dataset.
     pub rejected: usize,
     /// The whole network.
@@ -183,6 +185,7 @@ pub fn evaluate(model: &HostModel, dataset: &Dataset, split: Split) -> Result<Re
         garment: description.garment.clone(),
         vertices: model.sizes.vertices,
         size: judge.size,
+        whole: split == Split::All,
         rejected: dataset.rejected.len(),
         unrepaired: unrepaired.as_ref().zip(bare.as_ref()).map(|(run, bare)| moving(run, bare)).transpose()?,
         unpolished: unpolished.as_ref().zip(rough.as_ref()).map(|(run, rough)| moving(run, rough)).transpose()?,
@@ -236,8 +239,7 @@ fn by_joint(dataset: &Dataset, network: &[(f64, f64)], skinning: &[(f64, f64)]) 
         |joint: &String| JointErrors { joint: joint.clone(), vertices: 0, distance: 0.0, normal: 0.0, skinning: 0.0 };
     let mut joints: Vec<JointErrors> = setup.description.joints.iter().map(empty).collect();
     for (vertex, nearest) in setup.nearest()?.into_iter().enumerate() {
-        let strongest = setup.body_weights[nearest].iter().max_by(|a, b| a.1.total_cmp(&b.1));
-        let Some(joint) = strongest.and_then(|(joint, _)| joints.get_mut(*joint)) else { continue };
+        let Some(joint) = joints.get_mut(strongest(&setup.body_weights[nearest])) else { continue };
         joint.vertices += 1;
         joint.distance += network[vertex].0;
         joint.normal += network[vertex].1;

@@ -24,7 +24,7 @@ fn dataset() -> Dataset {
 #[test]
 fn every_form_learns_and_outcomes_are_kept() {
     let (dataset, folder) = (dataset(), tempfile::tempdir().expect("a folder"));
-    let settings = Settings { epochs: 30, ..Settings::default() };
+    let settings = Settings { epochs: Some(30), ..Settings::default() };
     let study = Study::new(&dataset, settings, folder.path()).expect("a study");
     let tables = [Table::Comparison, Table::Ablation];
     let all = entries(&tables);
@@ -48,16 +48,16 @@ fn every_form_learns_and_outcomes_are_kept() {
             (made.errors.distance.mean - again.errors.distance.mean).abs() + (made.validation - again.validation).abs();
         assert!(moved < 1e-12 && (made.bytes, made.flops) == (again.bytes, again.flops), "{made:?} {again:?}");
     }
-    let other = Study::new(&dataset, Settings { epochs: 2, ..settings }, folder.path()).expect("a study");
+    let other = Study::new(&dataset, Settings { epochs: Some(2), ..settings }, folder.path()).expect("a study");
     let message = other.outcome(&all[0], |_| ()).expect_err("another study").to_string();
-    assert!(message.contains("another study") && message.contains("epochs: 2"), "{message}");
+    assert!(message.contains("another study") && message.contains("epochs: Some(2)"), "{message}");
 }
 
 #[test]
 fn a_form_with_a_network_of_its_own_goes_on_after_an_interruption() {
     let (dataset, folder) = (dataset(), tempfile::tempdir().expect("a folder"));
     let (setup, slices) = (&dataset.setup, slices(&dataset).expect("slices"));
-    let settings = Settings { epochs: 7, variant: Method::Deepsd.variant(), ..Settings::default() };
+    let settings = Settings { epochs: Some(7), variant: Method::Deepsd.variant(), ..Settings::default() };
     let start = || {
         let model = Method::Deepsd.initial(setup, &slices.train, 1).expect("a model");
         let (model, network) = deepsd::deepsd(model, setup, 1).expect("a form");

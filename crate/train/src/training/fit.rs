@@ -109,7 +109,7 @@ impl Trainer {
     /// is not begun.
     fn ended(&self) -> bool {
         match self.settings.budget {
-            None => self.epoch >= self.settings.epochs,
+            None => self.epoch >= self.settings.epochs(),
             Some(budget) => {
                 let seconds = self.seconds();
                 seconds + 0.5 * seconds / self.epoch.max(1) as f64 >= budget.as_secs_f64()

@@ -58,9 +58,9 @@ type Sums = Vec<Vec<f32>>;
 /// How to train.
 #[derive(Clone, Copy, Debug, PartialEq, clap::Args)]
 pub struct Settings {
-    /// Passes over the training poses
-    #[arg(long, default_value_t = Self::default().epochs)]
-    pub epochs: usize,
+    /// Passes over the training poses. Default: 100
+    #[arg(long)]
+    pub epochs: Option<usize>,
     /// Train for this long instead (90s, 60m, 1.5h); the learning rate falls over that time
     #[arg(long = "time-budget", value_name = "TIME", value_parser = duration, conflicts_with = "epochs")]
     pub budget: Option<Duration>,
@@ -70,7 +70,7 @@ pub struct Settings {
     /// Simulated poses per optimisation step
     #[arg(long, default_value_t = Self::default().batch)]
     pub batch: usize,
-    /// Adam's learning rate at the start; it falls along a cosine
+    /// Adam's greatest learning rate: it rises over the first twentieth, then falls along a cosine
     #[arg(id = "learning-rate", long = "learning-rate", value_name = "RATE", default_value_t = Self::default().rate)]
     pub rate: f32,
     /// Seed of the initial weights, the order of poses, and the poses mixed during training
@@ -81,9 +81,19 @@ pub struct Settings {
     pub variant: Variant,
 }
 
+/// Passes over the training poses, where no other number is asked for.
+pub const EPOCHS: usize = 100;
+
 impl Default for Settings {
     fn default() -> Self {
-        Self { epochs: 100, budget: None, patience: 50, batch: 8, rate: 1e-3, seed: 1, variant: Variant::FULL }
+        Self { epochs: None, budget: None, patience: 50, batch: 8, rate: 1e-3, seed: 1, variant: Variant::FULL }
+    }
+}
+
+impl Settings {
+    /// Passes over the training poses.
+    pub fn epochs(&self) -> usize {
+        self.epochs.unwrap_or(EPOCHS)
     }
 }
 
@@ -247,7 +257,7 @@ impl Trainer {
     fn progress_at(&self, step: usize) -> f64 {
         match self.settings.budget {
             Some(budget) => self.seconds() / budget.as_secs_f64(),
-            None => step as f64 / (self.settings.epochs * self.steps()).max(1) as f64,
+            None => step as f64 / (self.settings.epochs() * self.steps()).max(1) as f64,
         }
     }
 

@@ -91,7 +91,7 @@ pub(super) fn resample(
     }
     let layers = layers(&garment.mesh, outside);
     let scale = outside.body / HUMAN;
-    let Some(reason) = reason(&garment.mesh, &layers, scale, wanted) else { return (garment, source) };
+    let Some(mut reason) = reason(&garment.mesh, &layers, scale, wanted) else { return (garment, source) };
     let whole = Garment { surface: surface(&garment), ..garment.clone() };
     let (sheet, numbers) = single(&whole, &source, &layers);
     let area = sheet.mesh.area();
@@ -100,7 +100,10 @@ pub(super) fn resample(
         _ => (area / (0.866 * VERTICES)).sqrt().clamp(EDGES[0] * scale, EDGES[1] * scale),
     };
     let target = (area / (0.866 * edge * edge)).ceil() as usize;
-    let (mut even, numbers) = Sheet::new(&sheet, &numbers).resample(target);
+    if target > MOST {
+        reason += &format!("; edges of {:.0} mm would be {target} vertices, at most {MOST} are simulated", 1e3 * edge);
+    }
+    let (mut even, numbers) = Sheet::new(&sheet, &numbers).resample(target.min(MOST));
     let found = quality(&even.mesh);
     if !found.manifold || even.mesh.triangles.is_empty() {
         said.push(format!("simulated as its maker meshed it, although {reason}: no even mesh could be made of it"));

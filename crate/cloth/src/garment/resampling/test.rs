@@ -150,6 +150,17 @@ fn what_is_coarse_is_drawn_as_finely_as_it_is_simulated() {
 }
 
 #[test]
+fn a_mesh_finer_than_can_be_simulated_is_as_fine_as_can_be() {
+    let mut garment = skirt(16, 6, 2);
+    garment.mesh.triangles.truncate(2 * 16 * 6);
+    garment.surface.triangles.truncate(2 * 16 * 6);
+    let mut said = Vec::new();
+    let (even, _) = resample(&OUTSIDE, garment.clone(), source(&garment), Resample::Edge(0.004), &mut said);
+    assert!((8_000..11_000).contains(&even.mesh.positions.len()), "{said:?}");
+    assert!(said[0].contains("edges of 4 mm would be") && said[0].contains("at most 10000 are simulated"), "{said:?}");
+}
+
+#[test]
 fn an_even_mesh_and_one_of_ours_stay_as_they_are() {
     let mut said = Vec::new();
     let layered = skirt(40, 20, 4);

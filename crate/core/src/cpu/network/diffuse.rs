@@ -16,12 +16,14 @@ pub(super) fn diffused(graph: Graph<&[u32]>, pulls: &[[f32; 3]], i: usize) -> Ve
 }
 
 impl Kernel for Diffuse<&[f32], &mut [f32], &[u32]> {
-    fn run(self, _: &mut Cpu) {
+    fn run(self, cpu: &mut Cpu) {
         let Self { offsets, neighbours, pulls, diffused: after } = self;
         let (graph, pulls) = (Graph { offsets, neighbours }, pulls.as_chunks::<3>().0);
-        for (i, after) in after.as_chunks_mut::<3>().0.iter_mut().enumerate() {
-            *after = diffused(graph, pulls, i).to_array();
-        }
+        cpu.threads.share(pulls.len(), [after], &mut cpu.scratch, |rows, [after], _| {
+            for (i, after) in rows.zip(after.as_chunks_mut::<3>().0) {
+                *after = diffused(graph, pulls, i).to_array();
+            }
+        });
     }
 }
 

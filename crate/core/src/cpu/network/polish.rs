@@ -35,6 +35,7 @@
 
 use super::diffuse::diffused;
 use crate::cpu::repair::closest::GAP;
+use crate::cpu::threads::of;
 use crate::cpu::{Cpu, Kernel};
 use crate::operation::Polish;
 use crate::topology::Graph;
@@ -53,23 +54,27 @@ pub const MOMENTUM: f32 = 0.7;
 pub const REACH: f32 = 0.01;
 
 impl Kernel for Polish<&[f32], &mut [f32], &[u32]> {
-    fn run(self, _: &mut Cpu) {
+    fn run(self, cpu: &mut Cpu) {
         let Self { offsets, neighbours, share, first, facing, pulls, moves, near, positions } = self;
         let (graph, pulls) = (Graph { offsets, neighbours }, pulls.as_chunks::<3>().0);
         let (rate, momentum) = (share[0] * RATE, share[0] * MOMENTUM);
-        let moves = moves.as_chunks_mut::<3>().0.iter_mut().zip(near.as_chunks_mut::<3>().0);
-        let cloth = positions.as_chunks_mut::<3>().0.iter_mut().zip(facing.as_chunks::<3>().0);
-        for (i, ((by, near), (position, facing))) in moves.zip(cloth).enumerate() {
-            // What was there before the first step may be anything.
-            let on = if first { Vec3::ZERO } else { Vec3::from_array(*by) * momentum };
-            let step = diffused(graph, pulls, i) * rate + on;
-            let lack = Vec3::from_array(*near);
-            let lack = if first { leant(lack, Vec3::from_array(*facing)) } else { lack };
-            let (step, lack) = kept_out(step, lack);
-            *by = step.to_array();
-            *near = lack.to_array();
-            *position = (Vec3::from_array(*position) + step).to_array();
-        }
+        let outputs = [moves, near, positions];
+        cpu.threads.share(pulls.len(), outputs, &mut cpu.scratch, |rows, [moves, near, positions], _| {
+            let facing = of(facing, &rows, 3).as_chunks::<3>().0;
+            let moves = moves.as_chunks_mut::<3>().0.iter_mut().zip(near.as_chunks_mut::<3>().0);
+            let cloth = positions.as_chunks_mut::<3>().0.iter_mut().zip(facing);
+            for (i, ((by, near), (position, facing))) in rows.zip(moves.zip(cloth)) {
+                // What was there before the first step may be anything.
+                let on = if first { Vec3::ZERO } else { Vec3::from_array(*by) * momentum };
+                let step = diffused(graph, pulls, i) * rate + on;
+                let lack = Vec3::from_array(*near);
+                let lack = if first { leant(lack, Vec3::from_array(*facing)) } else { lack };
+                let (step, lack) = kept_out(step, lack);
+                *by = step.to_array();
+                *near = lack.to_array();
+                *position = (Vec3::from_array(*position) + step).to_array();
+            }
+        });
     }
 }
 

@@ -13,27 +13,30 @@
 
 use super::polish::{RATE, REACH};
 use crate::cpu::repair::closest::GAP;
+use crate::cpu::threads::of;
 use crate::cpu::{Cpu, Kernel};
 use crate::operation::Pull;
 use crate::topology::Graph;
 use glam::Vec3;
 
 impl Kernel for Pull<&[f32], &mut [f32], &[u32]> {
-    fn run(self, _: &mut Cpu) {
+    fn run(self, cpu: &mut Cpu) {
         let Self { offsets, neighbours, squares, positions, near, pulls } = self;
         let graph = Graph { offsets, neighbours };
         let positions = positions.as_chunks::<3>().0;
-        let mut squares = squares.iter();
-        let pulls = pulls.as_chunks_mut::<3>().0.iter_mut().zip(near.as_chunks::<3>().0);
-        for (i, (pull, near)) in pulls.enumerate() {
-            let (neighbours, at) = (graph.of(i), Vec3::from_array(positions[i]));
-            let mut sum = Vec3::ZERO;
-            for (j, square) in neighbours.iter().zip(&mut squares) {
-                let along = Vec3::from_array(positions[*j as usize]) - at;
-                sum += along * (0.5 - square / (along.length_squared() + square));
+        cpu.threads.share(pulls.len() / 3, [pulls], &mut cpu.scratch, |rows, [pulls], _| {
+            let mut squares = squares[offsets[rows.start] as usize..].iter();
+            let pulls = pulls.as_chunks_mut::<3>().0.iter_mut().zip(of(near, &rows, 3).as_chunks::<3>().0);
+            for (i, (pull, near)) in rows.zip(pulls) {
+                let (neighbours, at) = (graph.of(i), Vec3::from_array(positions[i]));
+                let mut sum = Vec3::ZERO;
+                for (j, square) in neighbours.iter().zip(&mut squares) {
+                    let along = Vec3::from_array(positions[*j as usize]) - at;
+                    sum += along * (0.5 - square / (along.length_squared() + square));
+                }
+                *pull = followed(sum / neighbours.len().max(1) as f32, Vec3::from_array(*near)).to_array();
             }
-            *pull = followed(sum / neighbours.len().max(1) as f32, Vec3::from_array(*near)).to_array();
-        }
+        });
     }
 }
 

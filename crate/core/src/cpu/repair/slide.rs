@@ -8,32 +8,34 @@ use crate::operation::Slide;
 use crate::topology::Graph;
 use glam::Vec3;
 
-/// As [`RATE`](crate::cpu::network::polish::RATE), without momentum.
+/// w of the polish, far below [`its`](crate::cpu::network::polish::RATE): pulls are not shared here.
 pub const RATE: f32 = 2.0;
 
 impl Kernel for Slide<&[f32], &mut [f32], &[u32]> {
-    fn run(self, _: &mut Cpu) {
+    fn run(self, cpu: &mut Cpu) {
         let Self { offsets, neighbours, squares, share, positions, push, before, after } = self;
         let graph = Graph { offsets, neighbours };
         let [positions, push, before] = [positions, push, before].map(|points| points.as_chunks::<3>().0);
         let displaced = |i: usize| Vec3::from_array(positions[i]) + Vec3::from_array(before[i]);
         let rate = share[0] * RATE;
-        let mut squares = squares.iter();
-        for (i, after) in after.as_chunks_mut::<3>().0.iter_mut().enumerate() {
-            let (neighbours, at) = (graph.of(i), displaced(i));
-            let mut sum = Vec3::ZERO;
-            for (j, square) in neighbours.iter().zip(&mut squares) {
-                let along = displaced(*j as usize) - at;
-                sum += along * (0.5 - square / (along.length_squared() + square));
+        cpu.threads.share(before.len(), [after], &mut cpu.scratch, |rows, [after], _| {
+            let mut squares = squares[offsets[rows.start] as usize..].iter();
+            for (i, after) in rows.zip(after.as_chunks_mut::<3>().0) {
+                let (neighbours, at) = (graph.of(i), displaced(i));
+                let mut sum = Vec3::ZERO;
+                for (j, square) in neighbours.iter().zip(&mut squares) {
+                    let along = displaced(*j as usize) - at;
+                    sum += along * (0.5 - square / (along.length_squared() + square));
+                }
+                let by = Vec3::from_array(before[i]) + sum * (rate / neighbours.len().max(1) as f32);
+                let push = Vec3::from_array(push[i]);
+                let missing = match push.length_squared() {
+                    0.0 => 0.0,
+                    needed => (1.0 - by.dot(push) / needed).max(0.0),
+                };
+                *after = (by + push * missing).to_array();
             }
-            let by = Vec3::from_array(before[i]) + sum * (rate / neighbours.len().max(1) as f32);
-            let push = Vec3::from_array(push[i]);
-            let missing = match push.length_squared() {
-                0.0 => 0.0,
-                needed => (1.0 - by.dot(push) / needed).max(0.0),
-            };
-            *after = (by + push * missing).to_array();
-        }
+        });
     }
 }
 

@@ -64,7 +64,7 @@ const MEANINGS: [(&str, &str); 13] = [
     ),
     (
         "unseen",
-        "The network learned from none of these frames: the last tenth of the clips or, with fewer than ten clips, the \
+        "Frames that the network learned from none of: the last tenth of the clips or, with fewer than ten clips, the \
       last tenth of each.",
     ),
     ("plain skinning", "The garment at rest, moved by the skin weights of the nearest body vertices."),
@@ -84,8 +84,8 @@ pub fn report(
     let body = html! {
         h1 { (title) }
         p class="soft" {
-            "Predicted cloth against the simulation, on " (report.frames.len()) " unseen frames of "
-            (report.clips.len()) " clips."
+            "Predicted cloth against the simulation, on " (report.frames.len())
+            (if report.whole { " frames of " } else { " unseen frames of " }) (report.clips.len()) " clips."
         }
         (tiles(report))
         (before)

@@ -103,7 +103,7 @@ impl Gallery {
         html! {
             h2 { "Where the error is" }
             p {
-                "First the mean over all unseen frames, on the garment at rest; then the worst frame of each of the \
+                "First the mean over the frames judged, on the garment at rest; then the worst frame of each of the \
                 worst clips."
             }
             p class="scale" { "0 mm" i style=(gradient) {} (format!("{:.0} mm and more", self.top)) }

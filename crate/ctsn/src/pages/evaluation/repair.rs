@@ -63,7 +63,7 @@ pub(super) fn markup(repaired: &[Repaired]) -> Markup {
     html! {
         @if !repaired.is_empty() {
             h2 { "Repair of penetration" }
-            p { "The unseen frames with most vertices inside the body before the repair, worst first." }
+            p { "The frames with most vertices inside the body before the repair, worst first." }
         }
         @for (caption, pictures) in repaired {
             h3 { (caption) }

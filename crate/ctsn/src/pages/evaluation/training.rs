@@ -41,6 +41,7 @@ pub fn curves(path: &Path) -> Result<Vec<Chart<'static>>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::pages::html::chart::COLOURS;
 
     #[test]
     fn a_curve_becomes_two_charts_and_a_broken_one_is_named() {
@@ -63,5 +64,18 @@ mod tests {
             message.contains("model.curve.csv") && message.contains("line 2") && message.contains("fox"),
             "{message}"
         );
+    }
+
+    #[test]
+    fn every_line_of_a_chart_has_a_colour_of_its_own() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("model.curve.csv");
+        let (heads, row): (String, String) =
+            LOSSES.iter().map(|term| (format!("{}_loss,", term.name), "0.01,")).unzip();
+        let rest = "validation_distance,validation_normal,learning_rate,seconds";
+        std::fs::write(&path, format!("epoch,{heads}{rest}\n1,{row}0.04,12.5,0.001,3.0\n")).expect("a file");
+        for chart in curves(&path).expect("charts") {
+            assert!(chart.series.len() <= COLOURS.len(), "{}: {} lines", chart.y, chart.series.len());
+        }
     }
 }

@@ -8,8 +8,14 @@ use plotters::prelude::*;
 /// Pixels, also of the narrowest screen it is to be read on.
 const SIZE: (u32, u32) = (460, 280);
 /// Colours of the series, readable on light and on dark.
-pub const COLOURS: [RGBColor; 4] =
-    [RGBColor(0x2F, 0x7E, 0xD8), RGBColor(0xE0, 0x7B, 0x39), RGBColor(0x3A, 0xA7, 0x6D), RGBColor(0xA0, 0x62, 0xC8)];
+pub const COLOURS: [RGBColor; 6] = [
+    RGBColor(0x2F, 0x7E, 0xD8),
+    RGBColor(0xE0, 0x7B, 0x39),
+    RGBColor(0x3A, 0xA7, 0x6D),
+    RGBColor(0xA0, 0x62, 0xC8),
+    RGBColor(0xD0, 0x45, 0x5C),
+    RGBColor(0x8A, 0x83, 0x2E),
+];
 
 /// One line or cloud of points.
 pub struct Series {

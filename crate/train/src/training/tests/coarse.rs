@@ -59,7 +59,7 @@ fn coarse_cloth_teaches_the_skeleton_stream_alone() {
 fn the_same_coarse_poses_are_drawn_after_an_interruption_and_by_any_number_of_threads() {
     let (model, setup, samples, coarse) = scene();
     let [samples, coarse]: [Vec<&Sample>; 2] = [samples.iter().collect(), coarse.iter().collect()];
-    let settings = Settings { epochs: 4, batch: 3, ..Settings::default() };
+    let settings = Settings { epochs: Some(4), batch: 3, ..Settings::default() };
     let start = || {
         let mut trainer = Trainer::new(model.clone(), &setup, &samples, settings).unwrap();
         trainer.add_coarse(&setup, &coarse).unwrap();

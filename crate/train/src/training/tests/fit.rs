@@ -40,7 +40,7 @@ fn a_dead_mesh_stream_is_noticed() {
 
 #[test]
 fn an_interruption_and_a_second_run_give_the_same_bytes() {
-    let settings = Settings { epochs: 8, batch: 2, ..Settings::default() };
+    let settings = Settings { epochs: Some(8), batch: 2, ..Settings::default() };
     let folder = tempfile::tempdir().unwrap();
     let files = files(&folder);
     let whole = || {
@@ -70,7 +70,8 @@ fn an_interruption_and_a_second_run_give_the_same_bytes() {
 
 #[test]
 fn the_best_epoch_is_kept_and_no_gain_ends_the_training() {
-    let (mut trainer, validation) = trainer(Settings { epochs: 5000, patience: 3, batch: 2, ..Settings::default() });
+    let (mut trainer, validation) =
+        trainer(Settings { epochs: Some(5000), patience: 3, batch: 2, ..Settings::default() });
     let validation: Vec<&Sample> = validation.iter().collect();
     let folder = tempfile::tempdir().unwrap();
     // What is unseen is drawn at random, so it is not learned from the rest: its error rises before long.
@@ -88,7 +89,7 @@ fn the_best_epoch_is_kept_and_no_gain_ends_the_training() {
 
 #[test]
 fn a_diverging_training_stops_and_keeps_the_best_epoch() {
-    let settings = Settings { epochs: 50, batch: 2, ..Settings::default() };
+    let settings = Settings { epochs: Some(50), batch: 2, ..Settings::default() };
     let (mut trainer, validation) = trainer(settings);
     let validation: Vec<&Sample> = validation.iter().collect();
     let folder = tempfile::tempdir().unwrap();
@@ -131,7 +132,7 @@ fn an_ablation_learns_what_is_left() {
     let train: Vec<&Sample> = samples.iter().take(3).collect();
     for part in [Part::Skeleton, Part::Mesh, Part::Weights] {
         let (mut trainer, _) =
-            trainer(Settings { variant: Variant::without(&[part]), epochs: 100, ..Settings::default() });
+            trainer(Settings { variant: Variant::without(&[part]), epochs: Some(100), ..Settings::default() });
         let before = trainer.model();
         let first = fine(&mut trainer);
         let last = (0..60).fold(first, |_, _| fine(&mut trainer));

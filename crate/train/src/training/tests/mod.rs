@@ -186,11 +186,11 @@ fn assert_same_after_interruption(
             trainer.save(path).unwrap();
             let mut resumed = start();
             resumed.resume(path).unwrap();
-            (stop..settings.epochs).for_each(|_| _ = resumed.round(samples).unwrap());
+            (stop..settings.epochs()).for_each(|_| _ = resumed.round(samples).unwrap());
             resumed.model().to_bytes(Storage::F32)
         })
     };
-    let whole = train(1, settings.epochs);
+    let whole = train(1, settings.epochs());
     assert!(whole == train(1, 2), "interrupted");
     assert!(whole == train(3, 1), "by three threads");
 }
@@ -207,12 +207,12 @@ fn overfits_to_below_a_millimetre() {
     let samples: Vec<&Sample> = samples.iter().collect();
     let architecture = Architecture { embedding: 8, basis: 32, layers: 2, heads: 2, features: 16 };
     let model = initial(&setup, &samples, architecture, 1).unwrap();
-    let settings = Settings { epochs: 2500, batch: 4, ..Settings::default() };
+    let settings = Settings { epochs: Some(2500), batch: 4, ..Settings::default() };
     let distances = named(&["coarse", "fine"]);
     let mut trainer = Trainer::with(model, None, &distances, &setup, &samples, settings).unwrap();
     let first = fine(&mut trainer);
     let mut last = first;
-    while trainer.epoch < settings.epochs {
+    while trainer.epoch < settings.epochs() {
         last = fine(&mut trainer);
     }
     assert!(first > 0.02, "starts at {first} m");

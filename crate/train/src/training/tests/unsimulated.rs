@@ -33,14 +33,14 @@ fn poses_without_truth_teach_to_stay_outside_the_body() {
     let (model, setup, samples) = scene();
     // Few of them: many simulated poses teach it by themselves.
     let samples: Vec<&Sample> = samples.iter().take(3).collect();
-    let settings = Settings { epochs: 30, batch: 4, ..Settings::default() };
+    let settings = Settings { epochs: Some(30), batch: 4, ..Settings::default() };
     let (losses, outside) = (named(&["coarse", "fine", "penetration"]), named(&["penetration"]));
     let train = |unsimulated: bool| {
         let mut trainer = Trainer::with(model.clone(), None, &losses, &setup, &samples, settings).unwrap();
         if !unsimulated {
             trainer.unsimulated = None;
         }
-        (0..settings.epochs).for_each(|_| _ = trainer.round(&samples).unwrap());
+        (0..settings.epochs()).for_each(|_| _ = trainer.round(&samples).unwrap());
         trainer.model()
     };
     let poses = Unsimulated::new(&model, &outside, &setup, &samples, &settings).unwrap().expect("limbs to mix");
@@ -63,7 +63,7 @@ fn poses_without_truth_teach_to_stay_outside_the_body() {
 fn the_same_poses_are_drawn_after_an_interruption_and_by_any_number_of_threads() {
     let (model, setup, samples) = scene();
     let samples: Vec<&Sample> = samples.iter().collect();
-    let settings = Settings { epochs: 4, batch: 3, ..Settings::default() };
+    let settings = Settings { epochs: Some(4), batch: 3, ..Settings::default() };
     let start = || Trainer::new(model.clone(), &setup, &samples, settings).unwrap();
     let drawn = |step: usize| {
         let items = start().unsimulated.expect("limbs to mix").draw(&model, step).unwrap();
