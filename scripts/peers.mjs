@@ -55,7 +55,7 @@ export function networkAlone(from, to) {
   writeTensors(to, Object.fromEntries(header.filter(([name]) => !/^(body\.|cloth\.cut$)/.test(name))), bytes.subarray(8 + length));
 }
 
-/** The files of a size: made-up cloth, the network alone, as what is exported neither polishes nor repairs; its export. */
+/** The files of a size: made-up cloth, the network alone, since no more than that is exported, and its export. */
 async function prepare(ctsn, index) {
   const file = (ending) => path.join(folder, `${index}.${ending}`);
   await need(ctsn, ['bench', ...sizes[index].flags, '--write-model', file('safetensors')]);
