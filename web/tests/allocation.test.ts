@@ -18,7 +18,7 @@ test('predictCloth allocates nothing in JavaScript', async () => {
   expect(found).toBeLessThan(NOTHING);
   // A small object is noticed.
   const keep = () => kept.push({ prediction: model.predictCloth(poses[0]!, { ...options }) });
-  expect(allocatedBytes(keep)).toBeGreaterThan(NOTHING);
+  expect(allocatedBytes(keep, 5)).toBeGreaterThan(NOTHING);
   model.dispose();
 });
 
