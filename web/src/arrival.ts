@@ -15,6 +15,8 @@ class Arrival {
   #waiting = 0;
   /** Whether it is kept although nobody waits. */
   #kept = false;
+  /** Whether all of it has come. */
+  #come = false;
 
   private constructor(address: string, cache: string | undefined) {
     this.#address = address;
@@ -25,7 +27,10 @@ class Arrival {
     };
     this.#bytes = download(address, { onProgress, onPart, cache, request: { signal: this.#request.signal } });
     // A failure is no file to be kept; whoever waits is told.
-    this.#bytes.catch(() => this.#forget());
+    this.#bytes.then(
+      () => (this.#come = true),
+      () => this.#forget(),
+    );
   }
 
   static of(address: string, cache: string | undefined): Arrival {
@@ -50,7 +55,8 @@ class Arrival {
       this.#listeners.delete(listener);
       if (--this.#waiting === 0 && !this.#kept) {
         this.#forget();
-        this.#request.abort();
+        // The cache may not have read all of what has come.
+        if (!this.#come) this.#request.abort();
       }
     }
   }
