@@ -107,11 +107,10 @@ impl Field {
         (self.origin, self.size) = (self.point(bounds[0]), [0, 1, 2].map(|k| bounds[1][k] - bounds[0][k] + 1));
     }
 
-    /// Where voxel `i` is on the grid. (Millions are asked for, and halves of 64 bits divide in a third of the time.)
+    /// Where voxel `i` is on the grid. (In 32 bits, a robe and a cape took as long to make: 22 and 23 s.)
     pub fn place(&self, i: usize) -> [usize; 3] {
-        let ([nx, ny, _], i) = (self.size.map(|count| count as u32), i as u32);
-        let rows = i / nx;
-        [i % nx, rows % ny, rows / ny].map(|place| place as usize)
+        let [nx, ny, _] = self.size;
+        [i % nx, i / nx % ny, i / (nx * ny)]
     }
 
     /// The up to six voxels next to voxel `i`.

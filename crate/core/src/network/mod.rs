@@ -200,7 +200,7 @@ pub(crate) fn repair<D: Device>(
 }
 
 /// Joints -> body frame and pose vector.
-pub(crate) fn pose<D: Device>(device: &mut D, model: &DeviceModel<D>, a: &mut Activations<D::Buffer>) {
+pub fn pose<D: Device>(device: &mut D, model: &DeviceModel<D>, a: &mut Activations<D::Buffer>) {
     let (rig, joints) = (Arc::clone(&model.rig), &a.joints);
     device.run(BodyFrame { rig, joints, transforms: &mut a.body_frame, vector: &mut a.pose }.into());
 }

@@ -6,10 +6,9 @@ mod stages;
 use super::Device;
 use anyhow::{Result, ensure};
 use ctsn_core::cpu::{Cpu, Level, Threads};
-use ctsn_core::device::Device as _;
 use ctsn_core::model::{Cut, HostModel, STEPS, Sizes, Storage};
-use ctsn_core::network::{Activations, collide, forward, polish, skin, stand};
-use ctsn_core::operation::{self, Space};
+use ctsn_core::network::{Activations, collide, forward, polish, pose, skin, stand};
+use ctsn_core::operation::Space;
 use ctsn_core::pose::BodyFrame;
 use ctsn_core::{Predictor, Streams};
 use ctsn_rig::statistics::Sorted;
@@ -160,15 +159,13 @@ impl Timed {
         }
     }
 
-    fn predict(&mut self, pose: &[f32]) -> Result<()> {
+    fn predict(&mut self, joints: &[f32]) -> Result<()> {
         let start = Instant::now();
-        self.predictor.predict_row_major(pose, Streams::Both)?;
+        self.predictor.predict_row_major(joints, Streams::Both)?;
         self.whole.push(start.elapsed().as_secs_f64() * 1e3);
         let (device, model, room) = (&mut self.device, self.predictor.model(), &mut self.room);
-        model.rig.read(pose, &mut room.joints)?;
-        let (rig, joints) = (model.rig.clone(), &room.joints);
-        device
-            .run(operation::BodyFrame { rig, joints, transforms: &mut room.body_frame, vector: &mut room.pose }.into());
+        model.rig.read(joints, &mut room.joints)?;
+        pose(device, model, room);
         forward(device, model, Streams::Both, Space::World, room);
         let start = Instant::now();
         stand(device, model, room);

@@ -6,8 +6,8 @@ impl std::fmt::Display for Report {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let (frames, clips) = (self.frames.len(), self.clips.len());
         let left_out = format!("{} poses were left out by the simulation", self.rejected);
-        let which = if self.whole { "all" } else { "unseen" };
-        writeln!(f, "{} on {}: {frames} {which} frames of {clips} clips; {left_out}", self.garment, self.character)?;
+        let which = if self.whole { "" } else { "unseen " };
+        writeln!(f, "{} on {}: {frames} {which}frames of {clips} clips; {left_out}", self.garment, self.character)?;
         let heads =
             ["E_dist mm", "95 %", "E_norm deg", "95 %", "inside %", "depth mm", "cross %", "stretch %", "m/s²", "slow"];
         writeln!(
