@@ -125,7 +125,7 @@ impl Remesher<'_> {
             let miss = |v: u32, change: i64| (valence(v) + change - 6).pow(2);
             let before = miss(a, 0) + miss(b, 0) + miss(c, 0) + miss(d, 0);
             let after = miss(a, -1) + miss(b, -1) + miss(c, 1) + miss(d, 1);
-            if after >= before || valence(a) <= 3 || valence(b) <= 3 || c == d || mesh.ring(c).contains(&d) {
+            if after >= before || valence(a) <= 3 || valence(b) <= 3 || c == d || mesh.adjoins(c, d) {
                 continue;
             }
             let (Some(first), Some(second)) = (mesh.triangle(s), mesh.triangle(t)) else { continue };

@@ -8,7 +8,7 @@ use super::region::Region;
 use ctsn_rig::mesh::triangle::{cross, least_angle};
 use ctsn_rig::mesh::{DynamicMesh, around, ordered};
 use glam::DVec3;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 /// Where a vertex belongs that came to a point: by its rim, where it is on one, that point, and its unit normal.
 pub(crate) type Onto<'a> = dyn Fn(Option<usize>, DVec3, DVec3) -> DVec3 + 'a;
@@ -77,7 +77,10 @@ impl Sheet<'_> {
 
     /// Edges (low, high), ascending.
     fn edges(&self) -> Vec<[u32; 2]> {
-        self.mesh.triangles().flat_map(around).map(ordered).collect::<BTreeSet<_>>().into_iter().collect()
+        let mut edges: Vec<_> = self.mesh.triangles().flat_map(around).map(ordered).collect();
+        edges.sort_unstable();
+        edges.dedup();
+        edges
     }
 
     /// Splits every edge longer than `longest` at its middle, longest edges first.
@@ -151,19 +154,23 @@ impl Sheet<'_> {
 
     /// Flips inner edges where that is better and the surface does not fold.
     fn flip(&mut self, better: Better) {
+        let mut valence: Vec<_> = (0..self.rim.len()).map(|v| self.mesh.ring(v as u32).len() as i64).collect();
         for [a, b] in self.edges() {
             let mesh = &self.mesh;
             let &[left, right] = &mesh.beside([a, b])[..] else { continue };
             let (Some(c), Some(d)) = (mesh.opposite(left, [a, b]), mesh.opposite(right, [a, b])) else { continue };
-            if c == d || mesh.ring(c).contains(&d) {
+            if c == d || mesh.adjoins(c, d) {
                 continue;
             }
             let excess = |v: u32, change: i64| {
                 let wanted = if self.rim[v as usize].is_some() { 4 } else { 6 };
-                (mesh.ring(v).len() as i64 + change - wanted).pow(2)
+                (valence[v as usize] + change - wanted).pow(2)
             };
             let before: i64 = [a, b, c, d].iter().map(|&v| excess(v, 0)).sum();
             let after = excess(a, -1) + excess(b, -1) + excess(c, 1) + excess(d, 1);
+            if better == Better::Valence && after >= before {
+                continue;
+            }
             // Which of the two triangles runs a -> b decides the winding of the new pair.
             let runs = |t: u32| mesh.triangle(t).is_some_and(|t| around(t).contains(&[a, b]));
             let (c, d, left, right) = if runs(left) { (c, d, left, right) } else { (d, c, right, left) };
@@ -171,14 +178,14 @@ impl Sheet<'_> {
             let (new, normal) = ([[a, d, c], [b, c, d]], mesh.cross(first) + mesh.cross(second));
             let sound = |t: [u32; 3]| mesh.cross(t).dot(normal) > 0.5 * mesh.cross(t).length() * normal.length();
             let angle = |t: [u32; 3]| least_angle(t.map(|v| mesh.positions[v as usize]));
-            let old = [first, second].map(angle);
-            let wins = match better {
-                Better::Valence => after < before,
-                Better::Angle => new.iter().all(|t| angle(*t) > old[0].min(old[1]) + 1.0),
+            let wider = || {
+                let old = angle(first).min(angle(second));
+                new.iter().all(|t| angle(*t) > old + 1.0)
             };
-            if wins && new.into_iter().all(sound) {
+            if (better == Better::Valence || wider()) && new.into_iter().all(sound) {
                 self.mesh.alter(left, new[0]);
                 self.mesh.alter(right, new[1]);
+                [a, b, c, d].into_iter().for_each(|v| valence[v as usize] = self.mesh.ring(v).len() as i64);
             }
         }
     }

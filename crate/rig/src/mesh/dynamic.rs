@@ -68,6 +68,11 @@ impl DynamicMesh {
         ring
     }
 
+    /// Whether a triangle has both vertices.
+    pub fn adjoins(&self, a: u32, b: u32) -> bool {
+        self.fan(a).iter().any(|t| self.triangle(*t).is_some_and(|t| t.contains(&b)))
+    }
+
     /// The triangles at an edge.
     pub fn beside(&self, [a, b]: [u32; 2]) -> Vec<u32> {
         let shares = |t: &&u32| self.triangle(**t).is_some_and(|t| t.contains(&b));
@@ -153,7 +158,7 @@ mod tests {
         mesh.add_triangle([0, 1, middle]);
         assert_eq!((mesh.fan(1), mesh.fan(middle), mesh.ring(middle)), (&[1, 2][..], &[0, 2][..], vec![0, 1, 2]));
         mesh.set(1, None);
-        assert_eq!((mesh.beside([1, 2]), mesh.count()), (vec![], 4));
+        assert_eq!((mesh.beside([1, 2]), mesh.adjoins(1, 2), mesh.adjoins(1, 4), mesh.count()), (vec![], false, true, 4));
         // Its neighbours pull the middle inwards, within the plane.
         let slid = mesh.slid(middle, DVec3::new(0.0, 0.5, 9.0));
         assert!(slid.abs_diff_eq(DVec3::new(0.15, 0.5, 0.0), 1e-12), "{slid}");
