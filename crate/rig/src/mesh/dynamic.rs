@@ -158,7 +158,10 @@ mod tests {
         mesh.add_triangle([0, 1, middle]);
         assert_eq!((mesh.fan(1), mesh.fan(middle), mesh.ring(middle)), (&[1, 2][..], &[0, 2][..], vec![0, 1, 2]));
         mesh.set(1, None);
-        assert_eq!((mesh.beside([1, 2]), mesh.adjoins(1, 2), mesh.adjoins(1, 4), mesh.count()), (vec![], false, true, 4));
+        assert_eq!(
+            (mesh.beside([1, 2]), mesh.adjoins(1, 2), mesh.adjoins(1, 4), mesh.count()),
+            (vec![], false, true, 4)
+        );
         // Its neighbours pull the middle inwards, within the plane.
         let slid = mesh.slid(middle, DVec3::new(0.0, 0.5, 9.0));
         assert!(slid.abs_diff_eq(DVec3::new(0.15, 0.5, 0.0), 1e-12), "{slid}");
