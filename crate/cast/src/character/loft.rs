@@ -97,7 +97,8 @@ impl Loft {
         let (u, v) = (x / side, y / depth);
         let q = if n == 2.0 { u.hypot(v) } else { (u.powf(n) + v.powf(n)).powf(1.0 / n) };
         let w = excess / cap;
-        let radial = if q > 1e-9 { ((u / q).powf(n - 1.0) / side).hypot((v / q).powf(n - 1.0) / depth) } else { 0.0 };
+        let power = |share: f64| if n == 2.0 { share } else { share.powf(n - 1.0) };
+        let radial = if q > 1e-9 { (power(u / q) / side).hypot(power(v / q) / depth) } else { 0.0 };
         let total = q.hypot(w);
         if total < 1e-9 {
             return -side.min(depth);
