@@ -103,7 +103,7 @@ const suites = {
   'browser: the core as WebAssembly with simd128': () => cargoInBrowser([]),
   'browser: the core as WebAssembly with relaxed SIMD': () => cargoInBrowser(relaxedSimd.cargo),
   'emulated: the core on aarch64 with NEON': () => cargoOnArm(),
-  'native: a minute of random input': async () => settle(0, Object.keys(await fuzz(TARGETS, 60 / TARGETS.length)).length, 0),
+  'random input: a minute of it': async () => settle(0, Object.keys(await fuzz(TARGETS, 60 / TARGETS.length)).length, 0),
   'Node: the npm package': async () => {
     await buildLibrary();
     return vitest('package', 'simd128', 'oldest three');
@@ -150,14 +150,28 @@ async function runBeside(beginning) {
   return { results: [{ suite: beginning, ...settle(1, 0, 0), seconds: 0 }], failed: [] };
 }
 
-/** All suites: those of Node beside those of cargo, and what draws and measures after both. */
+/** What runs beside the suites of the workspace, of which each waits at its end, on one core, for its slowest test. */
+const BESIDE = ['Node', 'emulated', 'random'];
+
+/** One after the other, each in a process of its own. */
+async function runBesides() {
+  const results = [];
+  for (const beginning of BESIDE) {
+    const beside = await runBeside(beginning);
+    failed.push(...beside.failed);
+    results.push(...beside.results);
+  }
+  return results;
+}
+
+/** All suites: those of the workspace beside those others, and what draws and measures after both. */
 async function runAll() {
   const names = Object.keys(suites);
-  const ofNode = names.filter((name) => name.startsWith('Node'));
-  const [first, last] = [names.slice(0, names.indexOf(ofNode[0])), names.slice(names.indexOf(ofNode.at(-1)) + 1)];
-  const [results, beside] = await Promise.all([runSuites(first), runBeside('Node')]);
-  failed.push(...beside.failed);
-  return [...results, ...beside.results, ...(await runSuites(last))];
+  const isBeside = (name) => BESIDE.some((beginning) => name.startsWith(beginning));
+  const end = names.findLastIndex(isBeside) + 1;
+  const [first, last] = [names.slice(0, end).filter((name) => !isBeside(name)), names.slice(end)];
+  const both = await Promise.all([runSuites(first), runBesides()]);
+  return [...both.flat(), ...(await runSuites(last))];
 }
 
 await main(async () => {
