@@ -1,7 +1,8 @@
 // npm run gallery: pictures of the cast for readers, taken of the demo page, into docs/gallery: a moving one of all
-// figures, and of every pair three poses, front and back.
+// figures, of every pair three poses, front and back, and the page itself.
 //   npm run gallery              all
 //   npm run gallery -- cast      the moving picture alone
+//   npm run gallery -- page      the page alone
 //   npm run gallery -- fox-cape  these pairs
 import { mkdirSync, writeFileSync } from 'node:fs';
 import { buildLibrary } from './library.mjs';
@@ -22,6 +23,9 @@ const POSE = [220, 275];
 /** Shares of a clip at which it is looked at. */
 const MOMENTS = [0.12, 0.45, 0.78];
 const SIDES = [0, 180];
+/** Pixels of the page, and what is shown on it. */
+const SCREEN = [1200, 750];
+const SHOWN = { figure: 'anna', wear: 'tshirt,skirt', pose: 'showcase:300' };
 
 const save = (name, bytes) => {
   writeFileSync(at('docs', 'gallery', `${name}.webp`), bytes);
@@ -30,7 +34,7 @@ const save = (name, bytes) => {
 
 /** Pictures side by side on white, so many in a row, as one. */
 async function join(page, tiles, [width, height], row) {
-  const addresses = tiles.map((tile) => `data:image/webp;base64,${tile.toString('base64')}`);
+  const addresses = tiles.map((tile) => `data:image;base64,${tile.toString('base64')}`);
   const draw = async ([addresses, width, height, row]) => {
     const canvas = Object.assign(document.createElement('canvas'), { width: width * Math.min(row, addresses.length), height: height * Math.ceil(addresses.length / row) });
     const context = canvas.getContext('2d');
@@ -83,6 +87,15 @@ async function sheet({ page, show, picture }, figure, garment) {
   save(`${figure}-${garment}`, (await join(page, tiles, POSE, MOMENTS.length)).bytes);
 }
 
+/** The page as a visitor sees it. */
+async function screen({ page, show }) {
+  const [width, height] = SCREEN;
+  await page.setViewportSize({ width, height });
+  await show(SHOWN);
+  await page.evaluate(() => Promise.all([window.ctsnDemo.complete(), window.ctsnDemo.finished()]));
+  save('page', (await join(page, [await page.screenshot()], SCREEN, 1)).bytes);
+}
+
 await main(async () => {
   await buildLibrary();
   await build();
@@ -95,5 +108,6 @@ await main(async () => {
     for (const [figure, garments] of Object.entries(tryOn.cast)) {
       for (const garment of garments) if (asked(`${figure}-${garment}`)) await sheet(tryOn, figure, garment);
     }
+    if (asked('page')) await screen(tryOn);
   });
 });

@@ -24,7 +24,6 @@ await main(async () => {
         await show({ figure, wear: garment, pose: `${clip}:${frame}` });
         const bytes = await picture(SIZE);
         writeFileSync(at('www', 'public', 'cast', `${figure}-${garment}.webp`), bytes);
-        if (garment === garments[0]) writeFileSync(at('www', 'public', 'cast', `${figure}.webp`), bytes);
         say(`${figure} in ${garment}: ${bytes.length} bytes`);
       }
     }

@@ -3,7 +3,7 @@ import { chromium, environment, flags } from './browser.mjs';
 import { at, need } from './step.mjs';
 
 /** A pose that shows cloth, of people, animals and obstacles, as CLIP:FRAME. */
-const POSES = ['showcase:300', 'walk:12', 'cruise:20', 'wander 1:20'];
+const POSES = ['showcase:300', 'walk:12', 'cruise:20', 'push high:150'];
 
 export const build = () => need('vite', ['build', at('www'), '--logLevel', 'warn']);
 

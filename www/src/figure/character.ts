@@ -32,7 +32,7 @@ export class Character {
     this.#actions = new Map(motion.map((clip) => [clip.name, this.#mixer.clipAction(clip)]));
   }
 
-  /** Reads a GLB file [bytes]; `name` is what messages call it. */
+  /** Reads a GLB file [bytes], compressed by gzip or not; `name` is what messages call it. */
   static async parse(bytes: ArrayBuffer, name: string): Promise<Character> {
     const { scene, animations } = await read(bytes, name);
     const meshes: SkinnedMesh[] = [];
@@ -121,16 +121,24 @@ function trianglesOf({ geometry }: SkinnedMesh): ArrayLike<number> {
   return geometry.index?.array ?? Uint32Array.from({ length: count }, (_, vertex) => vertex);
 }
 
-async function read(bytes: ArrayBuffer, name: string) {
+async function read(file: ArrayBuffer, name: string) {
   const loader = new GLTFLoader();
-  // What is compressed so says it in the text at its beginning; what unpacks it is fetched for it alone.
-  const beginning = new TextDecoder('latin1').decode(bytes.slice(0, 1 << 20));
-  if (/(EXT|KHR)_meshopt_compression/.test(beginning)) {
-    loader.setMeshoptDecoder((await import('three/addons/libs/meshopt_decoder.module.js')).MeshoptDecoder);
-  }
   try {
+    const bytes = await unzip(file);
+    // What is compressed so says it in the text at its beginning; what unpacks it is fetched for it alone.
+    const beginning = new TextDecoder('latin1').decode(bytes.slice(0, 1 << 20));
+    if (/(EXT|KHR)_meshopt_compression/.test(beginning)) {
+      loader.setMeshoptDecoder((await import('three/addons/libs/meshopt_decoder.module.js')).MeshoptDecoder);
+    }
     return await loader.parseAsync(bytes, '');
   } catch (error) {
     throw new Error(`${name} is no glTF file that can be read: ${error instanceof Error ? error.message : String(error)}`);
   }
+}
+
+/** What gzip made the file of, by its first two bytes, or the file itself. */
+async function unzip(file: ArrayBuffer): Promise<ArrayBuffer> {
+  const [first, second] = new Uint8Array(file, 0, Math.min(2, file.byteLength));
+  if (first !== 0x1f || second !== 0x8b) return file;
+  return new Response(new Blob([file]).stream().pipeThrough(new DecompressionStream('gzip'))).arrayBuffer();
 }
