@@ -15,7 +15,8 @@ type Emit = (file: Rollup.EmittedAsset) => string;
 
 /**
  * The cast as a module: of what `cast.json` lists, that of which the files are in `public`. The built site has figures
- * compressed: their clips repeat themselves, little more than half of the bytes is left, and few servers compress a GLB on the way.
+ * compressed: their clips repeat themselves, little more than half of the bytes is left, and few servers compress a
+ * GLB on the way.
  */
 function cast(): Plugin {
   let isBuilt = false;

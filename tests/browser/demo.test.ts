@@ -7,7 +7,7 @@ import type { Quality } from 'ctsn';
 import { adorn } from './glb.js';
 import { predictNatively } from './native.js';
 import type { Demo } from '../../www/src/hook.js';
-import { announcements, ask, out, Site } from './page.js';
+import { announcements, ask, out, Site, weigh } from './page.js';
 import { difference, shareBeyond } from './safetensors.js';
 import tolerances from './tolerances.json' with { type: 'json' };
 
@@ -191,12 +191,18 @@ test('a failure is told on the page: no model, a broken model, no such clip or f
   for (const { complaints } of [missing, broken, nowhere, nobody]) expect(complaints.length).toBeGreaterThan(0);
 });
 
-test('what only WebGPU needs is fetched for a device, and never without one', async () => {
+test('a visit costs no more than 2 MB; what only WebGPU needs is fetched for a device, and never without one', async () => {
   const ofGpu = (files: string[]) => files.filter((name) => name.includes('gpu')).map((name) => name.split('.').at(-1));
   const onCpu = await site.visit();
   expect(onCpu.files).toContainEqual(expect.stringMatching(/^ctsn_relaxed_bg.*\.wasm$/));
   expect(ofGpu(onCpu.files)).toEqual([]);
   expect(onCpu.files.filter((name) => name.includes('inline'))).toEqual([]);
+  // Nor more than a visitor on the road has time for: the page, and the first figure in its clothes.
+  const { text, all } = weigh(onCpu.files);
+  expect(text).toBeGreaterThan(200_000);
+  expect(text).toBeLessThan(400_000);
+  expect(all - text).toBeGreaterThan(1_000_000);
+  expect(all).toBeLessThan(2_000_000);
   await site.leave();
   const none = 'GPU.prototype.requestAdapter = async () => null';
   const without = await site.visit('?backend=auto', (bare) => bare.addInitScript(none));

@@ -1,6 +1,8 @@
 // The built demo site, served, and headless Chromium to open it. Whatever a page complains about is kept.
-import { mkdirSync } from 'node:fs';
+import { mkdirSync, readdirSync, readFileSync } from 'node:fs';
+import path from 'node:path';
 import { fileURLToPath } from 'node:url';
+import { brotliCompressSync } from 'node:zlib';
 import { chromium as playwright, type Browser, type Page } from 'playwright-core';
 import { preview, type PreviewServer } from 'vite';
 import { chromium, environment, flags } from '../../scripts/browser.mjs';
@@ -70,6 +72,20 @@ export class Site {
     await this.#browser.close();
     await this.#server.close();
   }
+}
+
+/** Bytes of the site's files of these names, from a server that compresses text: of text, and of all. */
+export function weigh(names: string[]): { text: number; all: number } {
+  const weights = { text: 0, all: 0 };
+  for (const file of readdirSync(`${root}www/dist`, { recursive: true, encoding: 'utf8' })) {
+    if (!names.includes(path.basename(file)) && file !== 'index.html') continue;
+    const isText = /\.(html|js|css|wasm)$/.test(file);
+    const content = readFileSync(`${root}www/dist/${file}`);
+    const bytes = isText ? brotliCompressSync(content).length : content.length;
+    weights.all += bytes;
+    if (isText) weights.text += bytes;
+  }
+  return weights;
 }
 
 /** Where the page tells who listens to it of something, while it is left alone for two seconds. */

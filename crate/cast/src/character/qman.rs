@@ -61,7 +61,7 @@ const PARTS: &[Part] = &[
         .on(&[("Hips", 0.0, 0.01), ("Spine", 0.160, 0.055)]),
     Part::loft([0.078, 0.430, 0.0], SHORTS_LEG, [0.05, 0.008])
         .along([0.007, -0.170, 0.004], FRONT)
-        .blend(0.012, 0.015)
+        .blend(0.012, 0.0125)
         .on(&[("Hips", -0.03, 0.02), ("LeftUpLeg", 0.030, 0.060), ("LeftLeg", 0.190, 0.050)]),
     Part::loft([0.0, 0.745, -0.014], NECK, [0.03, 0.03]).blend(0.03, 0.018).on(&[
         ("Spine2", 0.0, 0.01),
@@ -113,13 +113,14 @@ const PARTS: &[Part] = &[
         .along([0.022, 0.0, 0.230], UP)
         .exponent(2.6)
         .coloured(SHOE)
-        .blend(0.004, 0.010)
+        .blend(0.004, 0.011)
         .on(&[("LeftFoot", 0.0, 0.01), ("LeftToeBase", 0.175, 0.025)]),
-    // Crisp paint: shorts, sole.
+    // Crisp paint: shorts, shoe, sole.
     Part::belt([0.2625, 0.513], 0.25, SHORTS),
+    Part::belt([-0.01, 0.1200], 0.25, SHOE),
     Part::belt([-0.01, 0.0275], 0.25, SOLE),
     // Head: skull, cheeks, nose, ears.
-    Part::ball([0.0, 1.075, 0.000], [0.195, 0.180, 0.190]).exponent(2.1).blend(0.02, 0.027).on(HEAD),
+    Part::ball([0.0, 1.075, 0.000], [0.195, 0.180, 0.190]).exponent(2.1).blend(0.02, 0.031).on(HEAD),
     Part::ball([0.0, 0.985, 0.030], [0.165, 0.150, 0.115]).blend(0.06, 0.024).on(HEAD),
     Part::ball([0.110, 0.985, 0.105], [0.060, 0.050, 0.050]).coloured(CHEEK).blend(0.05, 0.017).on(HEAD),
     Part::ball([0.0, 1.030, 0.188], [0.027, 0.026, 0.023]).coloured(CHEEK).blend(0.012, 0.009).on(HEAD),
@@ -128,7 +129,7 @@ const PARTS: &[Part] = &[
         .blend(0.014, 0.012)
         .on(HEAD),
     // Hair with a tuft; brows.
-    Part::ball([0.0, 1.118, -0.030], [0.206, 0.186, 0.172]).shell(1).coloured(HAIR).blend(0.02, 0.030).on(HEAD),
+    Part::ball([0.0, 1.118, -0.030], [0.206, 0.186, 0.172]).shell(1).coloured(HAIR).blend(0.02, 0.034).on(HEAD),
     Part::ball([0.055, 1.235, 0.090], [0.085, 0.085, 0.050])
         .along([0.3, 1.0, 0.3], FRONT)
         .shell(2)
