@@ -16,8 +16,9 @@ use ctsn_rig::path::to_body_frame;
 const TRIED: usize = 100;
 
 /// Share of the vertices that may lie inside the body where cloth was relaxed coarsely: nothing kept them out between
-/// those of the thinned garment.
-const ASTRAY: f64 = 0.01;
+/// those of the thinned garment. A hundredth left out 509 of 1,352 poses of a monster's robe, nine in ten of which had
+/// at most two.
+const ASTRAY: f64 = 0.03;
 
 impl Simulator {
     /// Relaxes `pose` from `start` (body frame [n]), which may cross itself and the body a little. The equilibrium is
