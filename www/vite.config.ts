@@ -32,7 +32,7 @@ function cast(): Plugin {
   const compress = (name: string, emit: Emit) => {
     const body = find(name, 'glb');
     if (!body || !isBuilt) return body;
-    const source = gzipSync(readFileSync(here(`public/cast/${name}.glb`)), { level: 9 });
+    const source = gzipSync(readFileSync(here(`public/cast/${name}.glb`)));
     emit({ type: 'asset', fileName: `cast/${name}.glb.gz`, source });
     return { file: body.file.replace('.glb', '.glb.gz'), bytes: source.length };
   };
