@@ -20,26 +20,22 @@ type Emit = (file: Rollup.EmittedAsset) => string;
  */
 function cast(): Plugin {
   let isBuilt = false;
-  const find = (name: string, type: string) => {
+  const find = (name: string, type: string, emit?: Emit) => {
     const file = `cast/${name}.${type}`;
     const path = here(`public/${file}`);
     if (!existsSync(path)) return undefined;
     const content = readFileSync(path);
     // A new version has a new address: what a browser keeps of the old one is not asked for.
     const version = createHash('sha256').update(content).digest('hex').slice(0, 8);
-    return { file: `${file}?v=${version}`, bytes: content.length };
+    if (!emit) return { file: `${file}?v=${version}`, bytes: content.length };
+    const source = gzipSync(content);
+    emit({ type: 'asset', fileName: `${file}.gz`, source });
+    return { file: `${file}.gz?v=${version}`, bytes: source.length };
   };
-  const compress = (name: string, emit: Emit) => {
-    const body = find(name, 'glb');
-    if (!body || !isBuilt) return body;
-    const source = gzipSync(readFileSync(here(`public/cast/${name}.glb`)));
-    emit({ type: 'asset', fileName: `cast/${name}.glb.gz`, source });
-    return { file: body.file.replace('.glb', '.glb.gz'), bytes: source.length };
-  };
-  const read = (emit: Emit): Figure[] => {
+  const read = (emit?: Emit): Figure[] => {
     const listed = JSON.parse(readFileSync(here('cast.json'), 'utf8')) as Listed[];
     return listed.flatMap((figure) => {
-      const body = compress(figure.id, emit);
+      const body = find(figure.id, 'glb', emit);
       const garments = figure.garments.flatMap((garment) => {
         const pair = `${figure.id}-${garment.id}`;
         const model = find(pair, 'safetensors');
@@ -53,7 +49,8 @@ function cast(): Plugin {
     resolveId: (id) => (id === 'virtual:cast' ? `\0${id}` : undefined),
     configResolved: ({ command }) => void (isBuilt = command === 'build'),
     load(id) {
-      return id === '\0virtual:cast' ? `export default ${JSON.stringify(read((file) => this.emitFile(file)))}` : undefined;
+      if (id !== '\0virtual:cast') return undefined;
+      return `export default ${JSON.stringify(read(isBuilt ? (file) => this.emitFile(file) : undefined))}`;
     },
   };
 }

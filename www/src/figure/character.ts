@@ -122,18 +122,17 @@ function trianglesOf({ geometry }: SkinnedMesh): ArrayLike<number> {
 }
 
 async function read(file: ArrayBuffer, name: string) {
-  const loader = new GLTFLoader();
-  try {
-    const bytes = await unzip(file);
-    // What is compressed so says it in the text at its beginning; what unpacks it is fetched for it alone.
-    const beginning = new TextDecoder('latin1').decode(bytes.slice(0, 1 << 20));
-    if (/(EXT|KHR)_meshopt_compression/.test(beginning)) {
-      loader.setMeshoptDecoder((await import('three/addons/libs/meshopt_decoder.module.js')).MeshoptDecoder);
-    }
-    return await loader.parseAsync(bytes, '');
-  } catch (error) {
+  const refuse = (error: unknown): never => {
     throw new Error(`${name} is no glTF file that can be read: ${error instanceof Error ? error.message : String(error)}`);
+  };
+  const bytes = await unzip(file).catch(refuse);
+  const loader = new GLTFLoader();
+  // What is compressed so says it in the text at its beginning; what unpacks it is fetched for it alone.
+  const beginning = new TextDecoder('latin1').decode(bytes.slice(0, 1 << 20));
+  if (/(EXT|KHR)_meshopt_compression/.test(beginning)) {
+    loader.setMeshoptDecoder((await import('three/addons/libs/meshopt_decoder.module.js')).MeshoptDecoder);
   }
+  return loader.parseAsync(bytes, '').catch(refuse);
 }
 
 /** What gzip made the file of, by its first two bytes, or the file itself. */
