@@ -50,7 +50,7 @@ use unsimulated::Unsimulated;
 pub use variant::{Part, Variant, is_mesh_silent};
 
 /// Shares a batch is dealt in.
-const SHARES: usize = 4;
+const SHARES: usize = 8;
 
 /// A gradient per parameter array.
 type Sums = Vec<Vec<f32>>;
