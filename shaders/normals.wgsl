@@ -20,6 +20,13 @@ fn position(corner: u32) -> vec3<f32> {
     return vec3(positions[at], positions[at + 1u], positions[at + 2u]);
 }
 
+// Twice the area of the triangle with sides u and v, along its normal. None where they are parallel: hardware that
+// multiplies and adds at once leaves the rounding of a product, which has a direction.
+fn area(u: vec3<f32>, v: vec3<f32>) -> vec3<f32> {
+    let area = cross(u, v);
+    return select(vec3(0.0), area, dot(area, area) > 1e-12 * dot(u, u) * dot(v, v));
+}
+
 @compute @workgroup_size(64)
 fn normals(@builtin(global_invocation_id) id: vec3<u32>) {
     let i = id.x;
@@ -29,7 +36,7 @@ fn normals(@builtin(global_invocation_id) id: vec3<u32>) {
     var sum = vec3(0.0);
     for (var corner = offsets[i]; corner < offsets[i + 1u]; corner += 3u) {
         let a = position(corner);
-        sum += cross(position(corner + 1u) - a, position(corner + 2u) - a);
+        sum += area(position(corner + 1u) - a, position(corner + 2u) - a);
     }
     // +Y where a vertex has no area around it, or more than f32 can hold; squares of less than 1e-18 lose their digits.
     let length = sqrt(dot(sum, sum));

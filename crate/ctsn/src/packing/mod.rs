@@ -56,7 +56,7 @@ pub fn pack(file: &Tensors<'static>, [trial, judge]: [&Trial; 2], mut tell: impl
         if difference.within(1.0) || part < LEAST_PART {
             return Ok(Small { file: small, list, difference });
         }
-        part *= 0.8;
+        part *= 0.9;
     }
 }
 

@@ -6,6 +6,10 @@ use crate::operation::Normals;
 /// Twice the area, m², around a vertex that has a normal: the squares of less lose their digits in f32.
 const LEAST: f32 = 1e-18;
 
+/// Square of the least sine between two sides of a triangle that counts. Hardware that multiplies and adds at once, as
+/// GPUs do, leaves the rounding of a product where sides are parallel, and it has a direction.
+const PARALLEL: f32 = 1e-12;
+
 /// +Y where a vertex has no area around it, or more than f32 can hold.
 impl Kernel for Normals<&[f32], &mut [f32], &[u32]> {
     fn run(self, _: &mut Cpu) {
@@ -16,17 +20,24 @@ impl Kernel for Normals<&[f32], &mut [f32], &[u32]> {
             let (u, v): ([f32; 3], [f32; 3]) =
                 (std::array::from_fn(|i| b[i] - a[i]), std::array::from_fn(|i| c[i] - a[i]));
             let normal = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+            if !(square(&normal) > PARALLEL * square(&u) * square(&v)) {
+                continue;
+            }
             for i in triangle {
                 let sum = &mut normals[*i as usize];
                 (0..3).for_each(|c| sum[c] += normal[c]);
             }
         }
         for normal in normals {
-            let length = normal.iter().map(|c| c * c).sum::<f32>().sqrt();
+            let length = square(normal).sqrt();
             let told = length > LEAST && length.is_finite();
             *normal = if told { normal.map(|c| c / length) } else { [0.0, 1.0, 0.0] };
         }
     }
+}
+
+fn square(v: &[f32; 3]) -> f32 {
+    v.iter().map(|c| c * c).sum()
 }
 
 #[cfg(feature = "suite")]
