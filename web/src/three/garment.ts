@@ -1,5 +1,6 @@
 import type { Material } from 'three';
 import { CtsnError } from '../error.js';
+import type { ModelSource } from '../load.js';
 import type { Cloth } from './cloth.js';
 import type { Ghost } from './ghost.js';
 import type { AnyClothModel } from './options.js';
@@ -8,6 +9,8 @@ import type { Rest } from './rest.js';
 /** One garment on a character, as much as is seen of it. */
 export class Garment {
   readonly cloth: Cloth<Material, AnyClothModel>;
+  /** The file it was loaded from. */
+  readonly source: ModelSource;
   /** How it lies in the bind pose; there before it is shown. */
   rest!: Rest;
   /** Whether it is to be worn, or on its way off. */
@@ -20,8 +23,9 @@ export class Garment {
   /** The page's material, while a copy is shown in its place. */
   #own: Material | undefined;
 
-  constructor(cloth: Cloth<Material, AnyClothModel>, ghost: Ghost) {
+  constructor(cloth: Cloth<Material, AnyClothModel>, source: ModelSource, ghost: Ghost) {
     this.cloth = cloth;
+    this.source = source;
     this.#ghost = ghost;
   }
 

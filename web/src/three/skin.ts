@@ -23,17 +23,17 @@ export class Skin {
   }
 
   /** Finds out what a garment covers, once for each file. */
-  async cover(garment: Garment, source: ModelSource, covered: WardrobeOptions['covered']): Promise<void> {
+  async cover(garment: Garment, covered: WardrobeOptions['covered']): Promise<void> {
     if (!covered) return;
-    const found = this.#known.get(source) ?? new Map<SkinnedMesh, Uint8Array>();
+    const found = this.#known.get(garment.source) ?? new Map<SkinnedMesh, Uint8Array>();
     for (const mesh of this.#meshes) if (!found.has(mesh)) found.set(mesh, await covered(garment.cloth, mesh));
-    this.#known.set(source, found);
+    this.#known.set(garment.source, found);
     this.#covered.set(garment, found);
   }
 
   /** Forgets what the garment of a file covers, once nothing has that file any more. */
-  forget(source: ModelSource | undefined): void {
-    if (source !== undefined) this.#known.delete(source);
+  forget(source: ModelSource): void {
+    this.#known.delete(source);
   }
 
   /** Hides what these garments cover, and shows the rest. */

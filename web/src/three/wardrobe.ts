@@ -10,7 +10,7 @@ import { drawNearer } from './layer.js';
 import { checkCharacter, is, refusal, type AnyClothModel, type ClothOptions } from './options.js';
 import { restOf } from './rest.js';
 import { Skin } from './skin.js';
-import { Tuck } from './tuck.js';
+import { Tailor, type Tuck } from './tuck.js';
 
 /** What wardrobes hand to whatever loads their models. */
 export type WearOptions = Pick<LoadOptions, 'signal' | 'onProgress'>;
@@ -51,6 +51,7 @@ export class Wardrobe<Name extends string = string> extends Group {
   readonly #sources: Map<string, ModelSource>;
   readonly #options: WardrobeOptions<Name>;
   readonly #skin: Skin;
+  readonly #tailor = new Tailor();
   /** What is on the character: worn, or on its way off. The innermost first. */
   readonly #garments = new Map<string, Garment>();
   readonly #ghosts = new Ghosts();
@@ -95,7 +96,8 @@ export class Wardrobe<Name extends string = string> extends Group {
 
   /** Has one garment more, or another model for one; what is worn keeps its own until it has been taken off. */
   stock<More extends string>(garment: More | Name, source: ModelSource): Wardrobe<Name | More> {
-    this.#skin.forget(this.#sources.get(garment));
+    const before = this.#sources.get(garment);
+    if (before !== undefined) for (const known of [this.#skin, this.#tailor]) known.forget(before);
     this.#sources.set(garment, source);
     return this as unknown as Wardrobe<Name | More>;
   }
@@ -148,6 +150,7 @@ export class Wardrobe<Name extends string = string> extends Group {
     this.#call = new AbortController();
     settled.forEach((result, i) => result.status === 'fulfilled' && this.#garments.set(missing[i]!, result.value));
     this.#change(names);
+    await pause();
     return true;
   }
 
@@ -197,10 +200,11 @@ export class Wardrobe<Name extends string = string> extends Group {
     try {
       const model = await load(source, options);
       try {
+        await pause();
         options.signal?.throwIfAborted();
         const made = typeof material === 'function' ? material(name as Name) : material;
         const cloth = new Cloth<Material, AnyClothModel>(model, this.#character, made, this.#options);
-        const opened = (garment = new Garment(cloth, this.#ghosts.of(name)));
+        const opened = (garment = new Garment(cloth, source, this.#ghosts.of(name)));
         drawNearer(cloth, () => (this.#options.layer ?? 0.025) * opened.depth);
       } catch (error) {
         model.dispose();
@@ -209,7 +213,8 @@ export class Wardrobe<Name extends string = string> extends Group {
       garment.rest = await restOf(garment.cloth.model);
       // A model in a worker, or on a GPU whose answers come late, has shown nothing yet.
       await garment.cloth.settled();
-      await this.#skin.cover(garment, source, this.#options.covered);
+      await this.#skin.cover(garment, this.#options.covered);
+      await pause();
       options.signal?.throwIfAborted();
       return garment;
     } catch (error) {
@@ -247,7 +252,7 @@ export class Wardrobe<Name extends string = string> extends Group {
     const all = [...this.#garments.values()];
     all.forEach((garment, depth) => (garment.depth = depth));
     const known = (inner: Garment, outer: Garment) => before.find((tuck) => tuck.inner === inner && tuck.outer === outer);
-    const under = (outer: Garment) => all.slice(0, outer.depth).map((inner) => known(inner, outer) ?? new Tuck(inner, outer));
+    const under = (outer: Garment) => all.slice(0, outer.depth).map((inner) => known(inner, outer) ?? this.#tailor.tuck(inner, outer));
     this.#tucks = [...all].reverse().flatMap(under);
   }
 
@@ -275,6 +280,9 @@ export class Wardrobe<Name extends string = string> extends Group {
     this.#arrange();
   }
 }
+
+/** Lets the page draw and answer between two long steps: to read a model, to predict, to put it on, what the page does then. */
+const pause = () => new Promise<void>((resolve) => setTimeout(resolve));
 
 /** An order for what is wanted and what is still on: what goes stays over what it was over, and under what comes. */
 function stack(before: readonly string[], wanted: readonly string[]): string[] {

@@ -94,26 +94,48 @@ pub(super) fn basis(file: &Tensors, name: &str, graph: &Graph<Vec<u32>>) -> Resu
     Ok((values, shape[0]))
 }
 
-/// What a number of a smooth matrix [n, 3] should be: the mean of those of the vertex's neighbours before it, rounded.
-fn expected(graph: &Graph<Vec<u32>>, matrix: &[f32], at: usize) -> f32 {
-    let (vertex, axis) = (at / 3, at % 3);
-    let (mut sum, mut count) = (0.0, 0.0);
-    for other in graph.of(vertex).iter().map(|other| *other as usize).filter(|other| *other < vertex) {
-        (sum, count) = (sum + matrix[3 * other + axis], count + 1.0);
+/// The neighbours of each vertex that come before it.
+fn before(graph: &Graph<Vec<u32>>) -> Vec<&[u32]> {
+    let vertices = graph.offsets.len() - 1;
+    let row = |vertex: usize| {
+        let all = graph.of(vertex);
+        &all[..all.partition_point(|other| (*other as usize) < vertex)]
+    };
+    (0..vertices).map(row).collect()
+}
+
+/// What the three numbers of a vertex in a smooth matrix [n, 3] should be: the mean of those of its neighbours before
+/// it, rounded.
+fn expected(before: &[u32], matrix: &[[f32; 3]]) -> [f32; 3] {
+    if before.is_empty() {
+        return [0.0; 3];
     }
-    if count > 0.0 { (sum / count + 0.5).floor() } else { 0.0 }
+    let mut sum = [0.0; 3];
+    for other in before {
+        let numbers = matrix[*other as usize];
+        (0..3).for_each(|axis| sum[axis] += numbers[axis]);
+    }
+    sum.map(|sum: f32| (sum / before.len() as f32 + 0.5).floor())
 }
 
 fn add_expected(graph: &Graph<Vec<u32>>, matrices: &mut [f32]) {
-    for matrix in matrices.chunks_exact_mut(3 * (graph.offsets.len() - 1)) {
-        (0..matrix.len()).for_each(|at| matrix[at] += expected(graph, matrix, at));
+    let before = before(graph);
+    for matrix in matrices.as_chunks_mut::<3>().0.chunks_exact_mut(before.len()) {
+        for (vertex, before) in before.iter().enumerate() {
+            let expected = expected(before, matrix);
+            (0..3).for_each(|axis| matrix[vertex][axis] += expected[axis]);
+        }
     }
 }
 
 /// The inverse of [`add_expected`]: backwards, while those before are still there.
 fn subtract_expected(graph: &Graph<Vec<u32>>, matrices: &mut [f32]) {
-    for matrix in matrices.chunks_exact_mut(3 * (graph.offsets.len() - 1)) {
-        (0..matrix.len()).rev().for_each(|at| matrix[at] -= expected(graph, matrix, at));
+    let before = before(graph);
+    for matrix in matrices.as_chunks_mut::<3>().0.chunks_exact_mut(before.len()) {
+        for (vertex, before) in before.iter().enumerate().rev() {
+            let expected = expected(before, matrix);
+            (0..3).for_each(|axis| matrix[vertex][axis] -= expected[axis]);
+        }
     }
 }
 

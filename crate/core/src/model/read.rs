@@ -197,7 +197,11 @@ fn basis(file: &Tensors, name: &str, graph: &Graph<Vec<u32>>) -> Result<(Vec<f32
 
 /// [rows, columns] -> [columns, rows].
 pub(super) fn transpose(values: &[f32], rows: usize, columns: usize) -> Vec<f32> {
-    (0..rows * columns).map(|i| values[i % rows * columns + i / rows]).collect()
+    let mut transposed = Vec::with_capacity(rows * columns);
+    for column in 0..columns {
+        transposed.extend((0..rows).map(|row| values[row * columns + column]));
+    }
+    transposed
 }
 
 fn linear(file: &Tensors, name: &str, inputs: Option<usize>, outputs: Option<usize>) -> Result<Linear<Vec<f32>>> {
