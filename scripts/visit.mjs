@@ -77,7 +77,7 @@ async function visit(browser, origin) {
   return { cloth: first, folds: second, look };
 }
 
-/** In the page: WebGL draws nothing. What is left is the page's own work, on a machine whose software draws for seconds. */
+/** In the page: WebGL draws nothing. What is left is the page's own work, where software would draw for seconds. */
 function drawNothing() {
   const calls = ['drawElements', 'drawArrays', 'drawElementsInstanced', 'drawArraysInstanced', 'clear', 'blitFramebuffer', 'generateMipmap'];
   for (const name of calls) WebGL2RenderingContext.prototype[name] = () => undefined;

@@ -66,25 +66,21 @@ export class Tuck {
  * second, in which a page stands still.
  */
 export class Tailor {
-  readonly #sheets = new Map<ModelSource, Sheet>();
-  /** By the outer garment's file and the inner one's. */
-  readonly #nearest = new Map<ModelSource, Map<ModelSource, Int32Array>>();
+  /** By the outer garment's file; what is nearest in it by the inner one's. */
+  readonly #known = new Map<ModelSource, { sheet: Sheet; nearest: Map<ModelSource, Int32Array> }>();
 
   tuck(inner: Garment, outer: Garment): Tuck {
-    const sheet = this.#sheets.get(outer.source) ?? new Sheet(outer);
-    this.#sheets.set(outer.source, sheet);
-    const under = this.#nearest.get(outer.source) ?? new Map<ModelSource, Int32Array>();
-    this.#nearest.set(outer.source, under);
-    const nearest = under.get(inner.source) ?? pair(inner, outer);
-    under.set(inner.source, nearest);
-    return new Tuck(inner, outer, sheet, nearest);
+    const known = this.#known.get(outer.source) ?? { sheet: new Sheet(outer), nearest: new Map<ModelSource, Int32Array>() };
+    this.#known.set(outer.source, known);
+    const nearest = known.nearest.get(inner.source) ?? pair(inner, outer);
+    known.nearest.set(inner.source, nearest);
+    return new Tuck(inner, outer, known.sheet, nearest);
   }
 
   /** Forgets a file that nothing has any more. */
   forget(source: ModelSource): void {
-    this.#sheets.delete(source);
-    this.#nearest.delete(source);
-    for (const under of this.#nearest.values()) under.delete(source);
+    this.#known.delete(source);
+    for (const { nearest } of this.#known.values()) nearest.delete(source);
   }
 }
 

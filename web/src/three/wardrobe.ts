@@ -281,7 +281,7 @@ export class Wardrobe<Name extends string = string> extends Group {
   }
 }
 
-/** Lets the page draw and answer between two long steps: to read a model, to predict, to put it on, what the page does then. */
+/** Lets the page draw and answer between long steps: to read a model, to predict, to put it on, what comes then. */
 const pause = () => new Promise<void>((resolve) => setTimeout(resolve));
 
 /** An order for what is wanted and what is still on: what goes stays over what it was over, and under what comes. */
