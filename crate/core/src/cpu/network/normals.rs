@@ -20,10 +20,8 @@ impl Kernel for Normals<&[f32], &mut [f32], &[u32]> {
             let (u, v): ([f32; 3], [f32; 3]) =
                 (std::array::from_fn(|i| b[i] - a[i]), std::array::from_fn(|i| c[i] - a[i]));
             let normal = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
-            if !(square(&normal) > PARALLEL * square(&u) * square(&v)) {
-                continue;
-            }
-            for i in triangle {
+            let counts = square(&normal) > PARALLEL * square(&u) * square(&v);
+            for i in triangle.iter().filter(|_| counts) {
                 let sum = &mut normals[*i as usize];
                 (0..3).for_each(|c| sum[c] += normal[c]);
             }
