@@ -19,9 +19,10 @@ impl Kernel for Normals<&[f32], &mut [f32], &[u32]> {
             let [a, b, c] = triangle.map(|i| positions[i as usize]);
             let (u, v): ([f32; 3], [f32; 3]) =
                 (std::array::from_fn(|i| b[i] - a[i]), std::array::from_fn(|i| c[i] - a[i]));
-            let normal = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
-            let counts = square(&normal) > PARALLEL * square(&u) * square(&v);
-            for i in triangle.iter().filter(|_| counts) {
+            let area = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+            let counts = square(&area) > PARALLEL * square(&u) * square(&v);
+            let normal = if counts { area } else { [0.0; 3] };
+            for i in triangle {
                 let sum = &mut normals[*i as usize];
                 (0..3).for_each(|c| sum[c] += normal[c]);
             }
