@@ -2,14 +2,19 @@
 
 use crate::{Error, Result};
 use ctsn_core::file::Tensors;
-use flate2::Compression;
 use flate2::read::MultiGzDecoder;
-use flate2::write::GzEncoder;
 use std::io::{Read, Write};
+use std::num::NonZeroU64;
 use std::path::Path;
+use zopfli::{Format, Options};
 
 /// What a file begins with that gzip has packed.
 const GZIP: [u8; 2] = [0x1f, 0x8b];
+/// How often what packs a file tries again: fifteen times, its default, are twice the time for a 2,000th of the bytes.
+const ROUNDS: u64 = 5;
+/// Into how many blocks a file is cut at most, each with a code of its own: a model's every tensor, and every matrix of
+/// its bases, has other numbers. Fifteen, the default, make a model 3 to 5 % larger; twice as many save a 150th at most.
+const BLOCKS: u16 = 200;
 
 /// Reads a whole file, unpacked if it was packed by gzip.
 pub fn read(path: &Path) -> Result<Vec<u8>> {
@@ -25,9 +30,11 @@ pub fn read(path: &Path) -> Result<Vec<u8>> {
 
 /// Packs bytes by gzip, as small as it can.
 pub fn gzip(bytes: &[u8]) -> Vec<u8> {
-    let mut packed = GzEncoder::new(Vec::new(), Compression::best());
+    let iteration_count = NonZeroU64::new(ROUNDS).unwrap_or(NonZeroU64::MIN);
+    let options = Options { iteration_count, maximum_block_splits: BLOCKS, ..Options::default() };
+    let mut packed = Vec::new();
     // A vector takes all that it is given.
-    packed.write_all(bytes).and_then(|()| packed.finish()).unwrap_or_default()
+    zopfli::compress(options, Format::Gzip, bytes, &mut packed).map_or_else(|_| Vec::new(), |()| packed)
 }
 
 /// Reads a safetensors file, naming the file in errors.

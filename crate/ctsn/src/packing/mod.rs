@@ -7,6 +7,8 @@ use anyhow::Result;
 use ctsn_core::file::{Tensor, Tensors};
 use ctsn_core::model::pack::{MOST_LEVELS, narrow, packable, quantise};
 use ctsn_core::model::{MESH_BASIS, SKELETON_BASIS};
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 pub use trial::{Difference, Trial};
 pub use truth::truth;
 
@@ -42,12 +44,12 @@ pub struct Small {
 /// Packs a model's tensors, so that in the poses of `judge` it predicts what the model does within [`BOUND`]. Where
 /// together they change more, each gets less.
 pub fn pack(file: &Tensors<'static>, [trial, judge]: [&Trial; 2], mut tell: impl FnMut(&str)) -> Result<Small> {
-    let mut part = 1.0;
+    let (mut part, mut tried) = (1.0, Tried::new());
     loop {
         let (mut small, mut list) = (file.clone(), Vec::new());
         for name in packable(file) {
             tell(&name);
-            let packed = choose(file, &name, trial, part)?;
+            let packed = choose(file, &name, trial, part, &mut tried)?;
             quantise(&mut small, &name, packed.levels, importance(&name, trial))?;
             list.push(packed);
         }
@@ -66,14 +68,23 @@ fn importance<'a>(name: &str, trial: &'a Trial) -> Option<&'a [f32]> {
     Some(&trial.coefficients[at])
 }
 
+/// What tensors alone change at levels that were tried already: a smaller part tries many of them again.
+type Tried = BTreeMap<(String, u32), Difference>;
+
 /// The fewest levels by which a tensor alone keeps to its share, by halving.
-fn choose(file: &Tensors<'static>, name: &str, trial: &Trial, part: f64) -> Result<Packed> {
+fn choose(file: &Tensors<'static>, name: &str, trial: &Trial, part: f64, tried: &mut Tried) -> Result<Packed> {
     let share = part * SHARES.iter().find(|(basis, _)| *basis == name).map_or(SHARE, |(_, share)| *share);
     let levels = |half_bits: u32| ((FEWEST_LEVELS * (0.5 * f64::from(half_bits)).exp2()) as u32).min(MOST_LEVELS);
-    let attempt = |levels: u32| -> Result<Packed> {
-        let mut one = file.clone();
-        quantise(&mut one, name, levels, importance(name, trial))?;
-        Ok(Packed { name: name.to_owned(), levels, difference: trial.difference(&one)? })
+    let mut attempt = |levels: u32| -> Result<Packed> {
+        let difference = match tried.entry((name.to_owned(), levels)) {
+            Entry::Occupied(known) => *known.get(),
+            Entry::Vacant(new) => {
+                let mut one = file.clone();
+                quantise(&mut one, name, levels, importance(name, trial))?;
+                *new.insert(trial.difference(&one)?)
+            }
+        };
+        Ok(Packed { name: name.to_owned(), levels, difference })
     };
     // What is drawn alone does not show in a prediction.
     if name.starts_with("draw.") {

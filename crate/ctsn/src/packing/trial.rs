@@ -7,6 +7,10 @@ use ctsn_core::file::Tensors;
 use ctsn_core::model::HostModel;
 use ctsn_core::{Predictor, Streams};
 use ctsn_rig::{Character, joints};
+use rayon::prelude::*;
+
+/// Into how many tasks poses are dealt.
+const PARTS: usize = 16;
 
 /// How far two predictions are apart, polish and repair included.
 #[derive(Clone, Copy, Debug, Default)]
@@ -67,23 +71,38 @@ impl Trial {
 
     /// What the model of `file` predicts otherwise.
     pub fn difference(&self, file: &Tensors) -> Result<Difference> {
-        let mut predictor = Predictor::from_model(HostModel::read(file)?, Level::new());
-        let (mut sum, mut count) = (Difference::default(), 0.0);
-        for (pose, [positions, normals]) in self.poses.iter().zip(&self.truth) {
-            predictor.predict_row_major(pose, Streams::Both)?;
-            for (found, wanted) in predictor.positions().as_chunks::<3>().0.iter().zip(positions.as_chunks::<3>().0) {
-                let apart = apart(found, wanted);
-                sum.distance += apart;
-                sum.greatest = sum.greatest.max(apart);
-                count += 1.0;
-            }
-            for (found, wanted) in predictor.normals().as_chunks::<3>().0.iter().zip(normals.as_chunks::<3>().0) {
-                // By the chord: the cosine of a small angle has lost it.
-                sum.angle += (2.0 * (apart(found, wanted) / 2.0).min(1.0).asin()).to_degrees();
-            }
+        let model = HostModel::read(file)?;
+        // A part of the poses is a task; their sums are added in one order, however many threads there are.
+        let size = self.poses.len().div_ceil(PARTS);
+        let tasks: Vec<_> = self.poses.chunks(size).zip(self.truth.chunks(size)).collect();
+        let sums = tasks.into_par_iter().map(|(poses, truth)| summed(model.clone(), poses, truth));
+        let mut sum = Difference::default();
+        for part in sums.collect::<Result<Vec<_>>>()? {
+            sum.distance += part.distance;
+            sum.angle += part.angle;
+            sum.greatest = sum.greatest.max(part.greatest);
         }
+        let count = self.truth.iter().map(|[positions, _]| positions.len() / 3).sum::<usize>() as f64;
         Ok(Difference { distance: sum.distance / count, angle: sum.angle / count, greatest: sum.greatest })
     }
+}
+
+/// Distances and angles, summed over poses and vertices.
+fn summed(model: HostModel, poses: &[Vec<f32>], truth: &[[Vec<f32>; 2]]) -> Result<Difference> {
+    let (mut predictor, mut sum) = (Predictor::from_model(model, Level::new()), Difference::default());
+    for (pose, [positions, normals]) in poses.iter().zip(truth) {
+        predictor.predict_row_major(pose, Streams::Both)?;
+        for (found, wanted) in predictor.positions().as_chunks::<3>().0.iter().zip(positions.as_chunks::<3>().0) {
+            let apart = apart(found, wanted);
+            sum.distance += apart;
+            sum.greatest = sum.greatest.max(apart);
+        }
+        for (found, wanted) in predictor.normals().as_chunks::<3>().0.iter().zip(normals.as_chunks::<3>().0) {
+            // By the chord: the cosine of a small angle has lost it.
+            sum.angle += (2.0 * (apart(found, wanted) / 2.0).min(1.0).asin()).to_degrees();
+        }
+    }
+    Ok(sum)
 }
 
 fn apart(a: &[f32; 3], b: &[f32; 3]) -> f64 {
