@@ -1,6 +1,10 @@
 //! `ctsn bake`: its steps, and what it keeps between them.
 
 use super::made::{Folder, write_blanket, write_character, write_garment};
+use ctsn_core::cpu::Level;
+use ctsn_core::model::HostModel;
+use ctsn_core::{Predictor, Streams};
+use ctsn_rig::{joints, vertices};
 use glam::{DAffine3, DVec3};
 
 /// A folder with a character that turns for so many frames, and a blanket of few vertices on it.
@@ -36,6 +40,28 @@ fn a_bake_keeps_to_its_garment() {
     );
 }
 
+/// The model packed predicts what it does within the bound, in the character's frames, in less than half the bytes.
+fn is_packed_as_it_predicts(folder: &Folder) {
+    let told = folder.accepts("pack out.safetensors character.glb --report -o small.safetensors");
+    assert!(told.contains("skeleton.basis") && told.contains("wanted 0.1 mm and 0.1°"), "{told}");
+    let [whole, small] = ["out.safetensors", "small.safetensors"].map(|name| folder.path(name));
+    let bytes = |path| std::fs::metadata(path).expect("a file").len();
+    assert!(2 * bytes(&small) < bytes(&whole), "{} of {} bytes", bytes(&small), bytes(&whole));
+    let character = ctsn_rig::gltf::read_character(&folder.path("character.glb"), 10.0).expect("a character");
+    let cloth = |path| {
+        let model = HostModel::read(&ctsn_rig::file::tensors(path).expect("tensors")).expect("a model");
+        let mut predictor = Predictor::from_model(model, Level::new());
+        let mut predict = |pose| {
+            predictor.predict_row_major(&joints(pose), Streams::Both).expect("a prediction");
+            vertices(predictor.positions())
+        };
+        character.clips[0].poses.iter().flat_map(|pose| predict(pose)).collect::<Vec<_>>()
+    };
+    let (whole, small) = (cloth(&whole), cloth(&small));
+    let moved = whole.iter().zip(&small).map(|(a, b)| a.distance(*b)).sum::<f64>() / whole.len() as f64;
+    assert!(moved > 0.0 && moved < 1.5e-4, "{} vertices moved by {moved} m", whole.len());
+}
+
 #[test]
 fn a_bake_learns_from_paths_and_then_from_its_own_predictions() {
     let folder = turning(100);
@@ -60,6 +86,7 @@ fn a_bake_learns_from_paths_and_then_from_its_own_predictions() {
     assert!(poses("out.work") > poses("out.work/first"), "others are relaxed from predictions");
     let inside = folder.accepts("inspect out.safetensors --on character.glb");
     assert!(inside.contains("before the repair") && inside.contains("frames"), "{inside}");
+    is_packed_as_it_predicts(&folder);
     let again = folder.accepts(&bake);
     assert!(again.contains("0 poses to simulate") && again.contains("has been trained so already"), "{again}");
     assert_eq!(std::fs::read(folder.path("out.safetensors")).ok(), model.ok());
