@@ -9,9 +9,6 @@ use ctsn_core::{Predictor, Streams};
 use ctsn_rig::{Character, joints};
 use rayon::prelude::*;
 
-/// Into how many tasks poses are dealt.
-const PARTS: usize = 16;
-
 /// How far two predictions are apart, polish and repair included.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Difference {
@@ -72,26 +69,27 @@ impl Trial {
     /// What the model of `file` predicts otherwise.
     pub fn difference(&self, file: &Tensors) -> Result<Difference> {
         let model = HostModel::read(file)?;
-        // A part of the poses is a task; their sums are added in one order, however many threads there are.
-        let size = self.poses.len().div_ceil(PARTS);
-        let tasks: Vec<_> = self.poses.chunks(size).zip(self.truth.chunks(size)).collect();
-        let sums = tasks.into_par_iter().map(|(poses, truth)| summed(model.clone(), poses, truth));
-        let mut sum = Difference::default();
-        for part in sums.collect::<Result<Vec<_>>>()? {
-            sum.distance += part.distance;
-            sum.angle += part.angle;
-            sum.greatest = sum.greatest.max(part.greatest);
+        let each = self.poses.len().div_ceil(rayon::current_num_threads());
+        let tasks = self.poses.par_chunks(each).zip(self.truth.par_chunks(each));
+        let sums: Vec<_> = tasks.map(|(poses, truth)| sums(model.clone(), poses, truth)).collect::<Result<_>>()?;
+        // Pose by pose: so the sum is the same however many threads there are.
+        let mut all = Difference::default();
+        for sum in sums.iter().flatten() {
+            all.distance += sum.distance;
+            all.angle += sum.angle;
+            all.greatest = all.greatest.max(sum.greatest);
         }
         let count = self.truth.iter().map(|[positions, _]| positions.len() / 3).sum::<usize>() as f64;
-        Ok(Difference { distance: sum.distance / count, angle: sum.angle / count, greatest: sum.greatest })
+        Ok(Difference { distance: all.distance / count, angle: all.angle / count, ..all })
     }
 }
 
-/// Distances and angles, summed over poses and vertices.
-fn summed(model: HostModel, poses: &[Vec<f32>], truth: &[[Vec<f32>; 2]]) -> Result<Difference> {
-    let (mut predictor, mut sum) = (Predictor::from_model(model, Level::new()), Difference::default());
-    for (pose, [positions, normals]) in poses.iter().zip(truth) {
+/// Of each pose: distances and angles summed over the vertices, and the greatest distance.
+fn sums(model: HostModel, poses: &[Vec<f32>], truth: &[[Vec<f32>; 2]]) -> Result<Vec<Difference>> {
+    let mut predictor = Predictor::from_model(model, Level::new());
+    let mut sum = |pose: &Vec<f32>, [positions, normals]: &[Vec<f32>; 2]| {
         predictor.predict_row_major(pose, Streams::Both)?;
+        let mut sum = Difference::default();
         for (found, wanted) in predictor.positions().as_chunks::<3>().0.iter().zip(positions.as_chunks::<3>().0) {
             let apart = apart(found, wanted);
             sum.distance += apart;
@@ -101,8 +99,9 @@ fn summed(model: HostModel, poses: &[Vec<f32>], truth: &[[Vec<f32>; 2]]) -> Resu
             // By the chord: the cosine of a small angle has lost it.
             sum.angle += (2.0 * (apart(found, wanted) / 2.0).min(1.0).asin()).to_degrees();
         }
-    }
-    Ok(sum)
+        Ok(sum)
+    };
+    poses.iter().zip(truth).map(|(pose, truth)| sum(pose, truth)).collect()
 }
 
 fn apart(a: &[f32; 3], b: &[f32; 3]) -> f64 {
