@@ -12,8 +12,9 @@ use zopfli::{Format, Options};
 const GZIP: [u8; 2] = [0x1f, 0x8b];
 /// How often what packs a file tries again: fifteen times, its default, are twice the time for a 2,000th of the bytes.
 const ROUNDS: u64 = 5;
-/// Into how many blocks a file is cut at most, each with a code of its own: a model's every tensor, and every matrix of
-/// its bases, has other numbers. Fifteen, the default, make a model 3 to 5 % larger; twice as many save a 150th at most.
+/// Into how many blocks a file is cut at most, each with a code of its own: a model's every tensor, and every matrix
+/// of its bases, has other numbers. Fifteen, the default, make a model 3 to 5 % larger; twice as many save a 150th at
+/// most.
 const BLOCKS: u16 = 200;
 
 /// Reads a whole file, unpacked if it was packed by gzip.
