@@ -51,11 +51,11 @@ fn is_packed_as_it_predicts(folder: &Folder) {
     let cloth = |path| {
         let model = HostModel::read(&ctsn_rig::file::tensors(path).expect("tensors")).expect("a model");
         let mut predictor = Predictor::from_model(model, Level::new());
-        let mut predict = |pose| {
+        let predict = |pose| {
             predictor.predict_row_major(&joints(pose), Streams::Both).expect("a prediction");
             vertices(predictor.positions())
         };
-        character.clips[0].poses.iter().flat_map(|pose| predict(pose)).collect::<Vec<_>>()
+        character.clips[0].poses.iter().flat_map(predict).collect::<Vec<_>>()
     };
     let (whole, small) = (cloth(&whole), cloth(&small));
     let moved = whole.iter().zip(&small).map(|(a, b)| a.distance(*b)).sum::<f64>() / whole.len() as f64;
