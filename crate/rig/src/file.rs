@@ -11,7 +11,7 @@ use zopfli::{Format, Options};
 /// What a file begins with that gzip has packed.
 const GZIP: [u8; 2] = [0x1f, 0x8b];
 /// How often what packs a file tries again: fifteen times, its default, are twice the time for a 2,000th of the bytes.
-const ROUNDS: u64 = 5;
+const ROUNDS: NonZeroU64 = NonZeroU64::new(5).expect("five");
 /// Into how many blocks a file is cut at most, each with a code of its own: a model's every tensor, and every matrix
 /// of its bases, has other numbers. Fifteen, the default, make a model 3 to 5 % larger; twice as many save a 150th at
 /// most.
@@ -31,8 +31,7 @@ pub fn read(path: &Path) -> Result<Vec<u8>> {
 
 /// Packs bytes by gzip, as small as it can.
 pub fn gzip(bytes: &[u8]) -> Vec<u8> {
-    let iteration_count = NonZeroU64::new(ROUNDS).unwrap_or(NonZeroU64::MIN);
-    let options = Options { iteration_count, maximum_block_splits: BLOCKS, ..Options::default() };
+    let options = Options { iteration_count: ROUNDS, maximum_block_splits: BLOCKS, ..Options::default() };
     let mut packed = Vec::new();
     // A vector takes all that it is given.
     zopfli::compress(options, Format::Gzip, bytes, &mut packed).map_or_else(|_| Vec::new(), |()| packed)

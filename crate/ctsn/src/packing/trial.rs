@@ -69,12 +69,11 @@ impl Trial {
     /// What the model of `file` predicts otherwise.
     pub fn difference(&self, file: &Tensors) -> Result<Difference> {
         let model = HostModel::read(file)?;
-        let each = self.poses.len().div_ceil(rayon::current_num_threads());
-        let tasks = self.poses.par_chunks(each).zip(self.truth.par_chunks(each));
-        let sums: Vec<_> = tasks.map(|(poses, truth)| sums(model.clone(), poses, truth)).collect::<Result<_>>()?;
+        let start = || Predictor::from_model(model.clone(), Level::new());
+        let sums = self.poses.par_iter().zip(&self.truth).map_init(start, sum).collect::<Result<Vec<_>>>()?;
         // Pose by pose: so the sum is the same however many threads there are.
         let mut all = Difference::default();
-        for sum in sums.iter().flatten() {
+        for sum in sums {
             all.distance += sum.distance;
             all.angle += sum.angle;
             all.greatest = all.greatest.max(sum.greatest);
@@ -84,24 +83,20 @@ impl Trial {
     }
 }
 
-/// Of each pose: distances and angles summed over the vertices, and the greatest distance.
-fn sums(model: HostModel, poses: &[Vec<f32>], truth: &[[Vec<f32>; 2]]) -> Result<Vec<Difference>> {
-    let mut predictor = Predictor::from_model(model, Level::new());
-    let mut sum = |pose: &Vec<f32>, [positions, normals]: &[Vec<f32>; 2]| {
-        predictor.predict_row_major(pose, Streams::Both)?;
-        let mut sum = Difference::default();
-        for (found, wanted) in predictor.positions().as_chunks::<3>().0.iter().zip(positions.as_chunks::<3>().0) {
-            let apart = apart(found, wanted);
-            sum.distance += apart;
-            sum.greatest = sum.greatest.max(apart);
-        }
-        for (found, wanted) in predictor.normals().as_chunks::<3>().0.iter().zip(normals.as_chunks::<3>().0) {
-            // By the chord: the cosine of a small angle has lost it.
-            sum.angle += (2.0 * (apart(found, wanted) / 2.0).min(1.0).asin()).to_degrees();
-        }
-        Ok(sum)
-    };
-    poses.iter().zip(truth).map(|(pose, truth)| sum(pose, truth)).collect()
+/// In a pose: distances and angles summed over the vertices, and the greatest distance.
+fn sum(predictor: &mut Predictor, (pose, [positions, normals]): (&Vec<f32>, &[Vec<f32>; 2])) -> Result<Difference> {
+    predictor.predict_row_major(pose, Streams::Both)?;
+    let mut sum = Difference::default();
+    for (found, wanted) in predictor.positions().as_chunks::<3>().0.iter().zip(positions.as_chunks::<3>().0) {
+        let apart = apart(found, wanted);
+        sum.distance += apart;
+        sum.greatest = sum.greatest.max(apart);
+    }
+    for (found, wanted) in predictor.normals().as_chunks::<3>().0.iter().zip(normals.as_chunks::<3>().0) {
+        // By the chord: the cosine of a small angle has lost it.
+        sum.angle += (2.0 * (apart(found, wanted) / 2.0).min(1.0).asin()).to_degrees();
+    }
+    Ok(sum)
 }
 
 fn apart(a: &[f32; 3], b: &[f32; 3]) -> f64 {
