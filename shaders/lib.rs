@@ -123,6 +123,8 @@ params! {
     Spread { vertices: u32, follow: f32 }
     /// `Params` of surface.wgsl.
     Surface { drawn: u32 }
+    /// `Params` of surround.wgsl.
+    Surround { vertices: u32, width: u32, strain: f32 }
 }
 
 macro_rules! shaders {
@@ -183,6 +185,8 @@ shaders! {
     SPREAD: Spread, "spread" + [], [Read Read Read Read Write], [64, 1];
     /// Vertex, positions, normals -> drawn positions, drawn normals.
     SURFACE: Surface, "surface" + [], [Read Read Read Write Write], [64, 1];
+    /// Potentials, places, joints, weights, transforms, around -> nodes.
+    SURROUND: Surround, "surround" + [], [Read Read Read Read Read Read Write], [64, 1];
 }
 
 /// The override constant of attend.wgsl: number of features it holds in workgroup memory.

@@ -8,6 +8,12 @@ export interface Tensor {
   values: Float32Array;
 }
 
+/** The same, or one of indices, to be written. */
+interface Written {
+  shape: number[];
+  values: Float32Array | Uint32Array;
+}
+
 interface Entry {
   dtype: string;
   shape: number[];
@@ -29,7 +35,7 @@ export function readTensors(file: string): { tensors: Record<string, Tensor>; me
 }
 
 /** A file's bytes, with these tensors besides. */
-export function addTensors(bytes: Uint8Array, tensors: Record<string, Tensor>): Buffer {
+export function addTensors(bytes: Uint8Array, tensors: Record<string, Written>): Buffer {
   const file = Buffer.from(bytes);
   const length = Number(file.readBigUInt64LE());
   const header = JSON.parse(file.toString('utf8', 8, 8 + length)) as Record<string, unknown>;
@@ -51,10 +57,11 @@ export function writeTensors(tensors: Record<string, Tensor>): Buffer {
 }
 
 /** A file of a header and its data, continued by `tensors`. */
-function container(header: Record<string, unknown>, parts: Buffer[], tensors: Record<string, Tensor>): Buffer {
+function container(header: Record<string, unknown>, parts: Buffer[], tensors: Record<string, Written>): Buffer {
   let end = parts.reduce((total, part) => total + part.length, 0);
   for (const [name, { shape, values }] of Object.entries(tensors)) {
-    header[name] = { dtype: 'F32', shape, data_offsets: [end, (end += values.byteLength)] };
+    const dtype = values instanceof Float32Array ? 'F32' : 'U32';
+    header[name] = { dtype, shape, data_offsets: [end, (end += values.byteLength)] };
     parts.push(Buffer.from(values.buffer, values.byteOffset, values.byteLength));
   }
   const json = JSON.stringify(header);

@@ -83,6 +83,30 @@ test('poses outside the range: clamped, and trusted in part or not at all', asyn
   expect(confidences.filter((confidence) => confidence > 0.05 && confidence < 0.95).length).toBeGreaterThan(2);
 });
 
+test('a mesh stream that sees the coarse cloth around each vertex', async () => {
+  const { poses, tolerance } = readGolden('small');
+  const { tensors } = readTensors(at('tests/golden/small.safetensors'));
+  const [features, vertices] = [tensors['graph.0.query.weight']!.shape[0]!, tensors['cloth.rest']!.shape[0]!];
+  // Steps to neighbours of the number, and weights of no pattern.
+  const steps = [1, vertices - 1, 7, vertices - 7];
+  const compass = Uint32Array.from({ length: 4 * vertices }, (_, e) => (Math.floor(e / 4) + steps[e % 4]!) % vertices);
+  const parts = ['query', 'key', 'value', 'skip'].map((part, p) => {
+    const values = Float32Array.from({ length: 54 * features }, (_, e) => 0.05 * Math.sin(12.9898 * e + p));
+    return [`graph.0.${part}.weight`, { shape: [features, 54], values }] as const;
+  });
+  // In part trusted, which fades what is seen, too.
+  const limit = (sign: number) => numbers(poses[0]!.length / 16, (e) => sign * (e % 4 === 3 ? 0.3 : 1));
+  for (const range of [{}, { 'pose.min': limit(-1), 'pose.max': limit(1) }]) {
+    const tensors = { 'graph.compass': { shape: [vertices, 4], values: compass }, ...Object.fromEntries(parts), ...range };
+    const bytes = addTensors(bytesOf('small'), tensors);
+    const [model, { predict }] = [await loadModel(bytes), await load(bytes)];
+    for (const pose of poses) {
+      expect(difference(await predict(pose), model.predictCloth(pose).positions)).toBeLessThanOrEqual(tolerance);
+    }
+    model.dispose();
+  }
+});
+
 test('a hip that has no heading keeps that of the world', async () => {
   const { poses, tolerance } = readGolden('small');
   const model = await loadModel(bytesOf('small'));

@@ -1,6 +1,7 @@
 //! Models of awkward sizes with random weights, and random poses for them.
 
 use ctsn_core::cpu::network::body_frame::rig;
+use ctsn_core::model::surroundings::{DIRECTIONS, INPUTS, surroundings};
 use ctsn_core::model::{Cut, HostModel, Layer, Linear, Reference, Sizes, Skinning, Surface};
 use ctsn_core::suite::{numbers, transform, triangles};
 use ctsn_core::topology::Graph;
@@ -77,6 +78,7 @@ pub fn model(rng: &mut Rng, shape: Shape) -> HostModel {
             std: [0.3, 0.5, 0.2],
             edge_scale: 0.5,
         },
+        surroundings: None,
         embedding: vec![linear(rng, 12 * joints, 9), linear(rng, 9, embedding)],
         skeleton_basis: numbers(rng, n * 3 * embedding, 0.1),
         layers: (0..layers).map(|l| layer(rng, if l == 0 { 3 } else { features })).collect(),
@@ -89,4 +91,13 @@ pub fn model(rng: &mut Rng, shape: Shape) -> HostModel {
         body: None,
         training: None,
     }
+}
+
+/// The same model, but that its mesh stream sees what is around each vertex of the coarse cloth.
+pub fn surrounded(rng: &mut Rng, mut model: HostModel) -> HostModel {
+    let n = model.sizes.vertices;
+    let compass: Vec<u32> = (0..n * DIRECTIONS).map(|_| rng.u32(..n as u32)).collect();
+    model.surroundings = Some(surroundings(&compass));
+    model.layers[0].project = linear(rng, INPUTS, 4 * model.sizes.features);
+    model
 }

@@ -96,7 +96,7 @@ operations! { $
 
     /// h⁰ and the edge potentials, whose differences are the edge features `e_ij`. network.md §3.
     Features<R, W> {
-        /// V [n, 3].
+        /// V, or X [n, 3].
         v: R,
         /// `T_C` [n, 3].
         rest: R,
@@ -110,6 +110,25 @@ operations! { $
         nodes: W,
         /// [V ; T_C] / edge_scale [n, 6].
         potentials: W,
+    }
+
+    /// What the mesh stream sees around each vertex of the coarse cloth, turned as its skinning turns it: h⁰ of a model
+    /// with surroundings. network.md §3.
+    Surround<R, W, I> {
+        /// [X ; T_C] / edge_scale [n, 6].
+        potentials: R,
+        /// X, standardised [n, 3].
+        places: R,
+        /// Joint per slot [n, width].
+        joints: I,
+        /// W per slot [n, width].
+        weights: R,
+        /// A, then `N⁻¹` [J + 1, 3, 4].
+        transforms: R,
+        /// Vertices around each [n, 16].
+        around: I,
+        /// h⁰ [n, 54].
+        nodes: W,
     }
 
     /// Attention over the neighbours, gate and LayerNorm. network.md §3.
@@ -327,6 +346,8 @@ impl Operation<usize, usize, usize> {
             // Matrices blended, then applied; once more for N⁻¹.
             Self::Skin(it) => 24 * it.weights + if it.space == Space::World { 12 } else { 6 } * it.rest,
             Self::Features(it) => 2 * it.nodes + it.potentials,
+            // Matrices blended; per vertex around two differences, one of them turned, and their difference scaled.
+            Self::Surround(it) => 18 * it.weights + 27 * it.around,
             Self::Attend(it) => {
                 let (vertices, edges, features) = (it.offsets - 1, it.neighbours, it.norm_bias);
                 // The edge term U and its two additions; per edge the logits, their softmax and the weighted sum; U

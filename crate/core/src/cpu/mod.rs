@@ -24,6 +24,7 @@ pub mod network {
     pub mod ride;
     pub mod skin;
     pub mod surface;
+    pub mod surround;
 }
 
 /// The repair of penetration, which comes after it.

@@ -6,6 +6,7 @@ mod cut;
 pub mod pack;
 mod read;
 mod ride;
+pub mod surroundings;
 mod write;
 
 use crate::pose::Rig;
@@ -130,6 +131,8 @@ pub struct Model<B, I> {
     pub skinning: Skinning<B, I>,
     /// What the mesh stream sees of the body.
     pub reference: Reference<B, I>,
+    /// Vertices around each, which it sees of the coarse cloth instead [n, 16].
+    pub surroundings: Option<I>,
     /// Φ.
     pub embedding: Vec<Linear<B>>,
     /// `B`, vertex-major [n, 3, m].
@@ -216,6 +219,7 @@ impl<B, I> Model<B, I> {
                 std: self.reference.std,
                 edge_scale: self.reference.edge_scale,
             },
+            surroundings: self.surroundings.as_ref().map(|around| indices(around)),
             embedding: self.embedding.iter().map(|layer| layer.map(values)).collect(),
             skeleton_basis: values(&self.skeleton_basis),
             layers: self.layers.iter().map(|layer| layer.map(values)).collect(),

@@ -1,6 +1,6 @@
 //! Model file -> model, checking every name, shape and index. network.md §8.
 
-use super::{Body, Cut, HostModel, Layer, Linear, Model, Reference, Ride, Sizes, Skinning, Surface, pack};
+use super::{Body, Cut, HostModel, Layer, Linear, Model, Reference, Ride, Sizes, Skinning, Surface, pack, surroundings};
 use super::{CLOTH_WEIGHTS, MESH_BASIS, MOST_STEPS, SKELETON_BASIS, STEPS};
 use crate::error::{Decimal, Error, Result};
 use crate::file::Tensors;
@@ -47,7 +47,9 @@ impl HostModel {
         let (skeleton_basis, m) = basis(file, SKELETON_BASIS, &graph)?;
         let (mesh_basis, k) = basis(file, MESH_BASIS, &graph)?;
         let embedding = mlp(file, "embedding", 12 * joints, Some(m))?;
-        let layers = layers(file)?;
+        let surroundings = surroundings::read(file, n)?;
+        let inputs = surroundings.as_ref().map_or(3, |_| surroundings::INPUTS);
+        let layers = layers(file, inputs)?;
         let features = layers.last().map_or(3, |layer| layer.project.outputs / 4);
         let heads = description.heads;
         if layers.is_empty()
@@ -80,6 +82,7 @@ impl HostModel {
             rest,
             skinning: Skinning::from_dense(&dense, joints),
             reference: reference(file, n, joints, description.edge_scale)?,
+            surroundings,
             embedding,
             skeleton_basis,
             layers,
@@ -236,8 +239,8 @@ fn mlp(file: &Tensors, name: &str, inputs: usize, outputs: Option<usize>) -> Res
     Ok(layers)
 }
 
-fn layers(file: &Tensors) -> Result<Vec<Layer<Vec<f32>>>> {
-    let (mut layers, mut inputs) = (Vec::new(), 3);
+fn layers(file: &Tensors, mut inputs: usize) -> Result<Vec<Layer<Vec<f32>>>> {
+    let mut layers = Vec::new();
     for l in 0..count(file, "graph") {
         let layer = layer(file, l, inputs)?;
         inputs = layer.project.outputs / 4;

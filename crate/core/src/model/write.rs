@@ -1,7 +1,7 @@
 //! Model -> model file, the inverse of `read.rs`. network.md §8.
 
 use super::read::{Description, transpose};
-use super::{CLOTH_WEIGHTS, HostModel, Linear, MESH_BASIS, SKELETON_BASIS, Skinning};
+use super::{CLOTH_WEIGHTS, HostModel, Linear, MESH_BASIS, SKELETON_BASIS, Skinning, surroundings};
 use crate::file::{Tensor, Tensors};
 use crate::pose::Frame;
 use miniserde::json;
@@ -133,6 +133,9 @@ impl HostModel {
         writer.indices("reference.index", &[index.len()], &index);
         writer.fixed("reference.mean", &[3], &reference.mean);
         writer.fixed("reference.std", &[3], &reference.std);
+        if let Some(around) = &self.surroundings {
+            surroundings::write(around, writer);
+        }
     }
 
     fn write_network(&self, writer: &mut Writer) {

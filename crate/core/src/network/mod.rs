@@ -6,7 +6,7 @@ mod graph;
 mod polish;
 
 use crate::device::Device;
-use crate::model::{HostModel, Model, Skinning};
+use crate::model::{HostModel, Model, Skinning, surroundings};
 use crate::operation::{self, BodyFrame, Normals, Space};
 pub use collide::{Collision, collide, expose, push, stand};
 pub(crate) use embedding::skeleton;
@@ -45,10 +45,12 @@ pub struct Activations<B> {
     pub embedding: Vec<B>,
     /// Δ_S [n, 3].
     pub skeleton: B,
-    /// V [n, 3].
+    /// V, or X where the model has surroundings [n, 3].
     pub reference: B,
-    /// h⁰ [n, 3].
+    /// The same, standardised [n, 3]: h⁰ of a model without surroundings.
     pub nodes: B,
+    /// h⁰ of one with them [n, 54].
+    pub surroundings: Option<B>,
     /// [V ; T_C] / edge_scale [n, 6].
     pub potentials: B,
     /// h of each graph layer [n, F].
@@ -138,6 +140,7 @@ impl<B> Activations<B> {
             skeleton: buffer("skeleton", n * 3),
             reference: buffer("reference", n * 3),
             nodes: buffer("reference", n * 3),
+            surroundings: model.surroundings.as_ref().map(|_| buffer("reference", n * surroundings::INPUTS)),
             potentials: buffer("reference", n * 6),
             layers: (0..model.layers.len()).map(|l| buffer(&format!("layer.{l}"), n * features)).collect(),
             workings: (0..workings).map(|l| working(&format!("layer.{l}"), &mut buffer)).collect(),

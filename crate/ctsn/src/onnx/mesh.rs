@@ -2,15 +2,19 @@
 
 use super::graph::{Graph, Value, integer};
 use super::order::{Batch, Order};
+use super::surround::surround;
 use ctsn_core::model::{HostModel, Layer, Linear};
 
 /// LayerNorm's eps.
 const EPSILON: f32 = ctsn_core::cpu::network::gate::EPSILON;
 
-/// Body vertices under the cloth V [3, n] -> Δ_M [3, n].
-pub fn mesh(graph: &mut Graph, model: &HostModel, order: &Order, reference: &Value) -> Value {
+/// Body vertices under the cloth V, or the coarse cloth X [3, n], and transforms [12, J] -> Δ_M [3, n].
+pub fn mesh(graph: &mut Graph, model: &HostModel, order: &Order, [reference, transforms]: [&Value; 2]) -> Value {
     let (n, k) = (model.sizes.vertices, model.sizes.basis);
     let (mut h, potentials) = features(graph, model, order, reference);
+    if let Some(around) = &model.surroundings {
+        h = surround(graph, model, order, around, [&h, &potentials, transforms]);
+    }
     let batches = order.batches(&model.graph);
     for (l, layer) in model.layers.iter().enumerate() {
         graph.stage(&format!("layer.{l}"));
@@ -30,7 +34,7 @@ pub fn mesh(graph: &mut Graph, model: &HostModel, order: &Order, reference: &Val
     graph.sum(&blended, 2)
 }
 
-/// h⁰ [n, 3] and the edge potentials [n, 6].
+/// V or X, standardised [n, 3], and the edge potentials [n, 6].
 fn features(graph: &mut Graph, model: &HostModel, order: &Order, reference: &Value) -> (Value, Value) {
     let v = graph.transpose(reference, &[1, 0]);
     let [mean, std] = [model.reference.mean, model.reference.std].map(|axes| graph.floats(&[1, 3], &axes));

@@ -12,6 +12,7 @@ mod mesh;
 mod message;
 mod order;
 mod pose;
+mod surround;
 
 use ctsn_core::model::{HostModel, Skinning};
 use graph::{Graph, Value};
@@ -53,20 +54,29 @@ pub fn onnx(model: &HostModel) -> Vec<u8> {
 fn network(graph: &mut Graph, model: &HostModel, joints: &Value) -> Value {
     let (n, order) = (model.sizes.vertices, Order::by_degree(&model.graph));
     let pose = Pose::new(graph, model, joints);
-    let mut residual = skeleton(graph, model, &order, &pose);
+    let rest = graph.floats(&[3, n], &order.columns(&model.rest, 3));
+    // `at` and as much of a residual as the pose's confidence lets through.
+    let moved = |graph: &mut Graph, at: &Value, residual: Value| {
+        let residual = match &pose.confidence {
+            Some(confidence) => graph.node("Mul", &[confidence, &residual]),
+            None => residual,
+        };
+        graph.node("Add", &[at, &residual])
+    };
+    let residual = skeleton(graph, model, &order, &pose);
+    let mut template = moved(graph, &rest, residual);
     if model.mesh_stream {
         graph.stage("reference");
-        let rest = graph.floats(&[3, n], &order.columns(&model.reference.rest, 3));
-        let reference = skin(graph, model, &order, [&rest, &pose.transforms], &model.reference.skinning);
-        let mesh = mesh::mesh(graph, model, &order, &reference);
-        residual = graph.node("Add", &[&residual, &mesh]);
+        let body = graph.floats(&[3, n], &order.columns(&model.reference.rest, 3));
+        let (at, skinning) = match &model.surroundings {
+            Some(_) => (&template, &model.skinning),
+            None => (&body, &model.reference.skinning),
+        };
+        let seen = skin(graph, model, &order, [at, &pose.transforms], skinning);
+        let residual = mesh::mesh(graph, model, &order, [&seen, &pose.transforms]);
+        template = moved(graph, &template, residual);
     }
     graph.stage("template");
-    if let Some(confidence) = &pose.confidence {
-        residual = graph.node("Mul", &[confidence, &residual]);
-    }
-    let rest = graph.floats(&[3, n], &order.columns(&model.rest, 3));
-    let template = graph.node("Add", &[&rest, &residual]);
     graph.stage("positions");
     let positions = skin(graph, model, &order, [&template, &pose.transforms], &model.skinning);
     let positions = pose.back(graph, &positions);

@@ -2,10 +2,12 @@
 
 use super::{Id, IndexId, Record, Recorder};
 use crate::pack::{self, whole};
-use ctsn_core::cpu::network::{polish, ride};
+use ctsn_core::cpu::network::{polish, ride, surround};
 use ctsn_core::cpu::repair::closest::GAP;
+use ctsn_core::model::surroundings::INPUTS;
 use ctsn_core::operation::{
     Activation, Attend, Blend, BodyFrame, Diffuse, Features, Linear, Normals, Polish, Pull, Ride, Skin, Space, Surface,
+    Surround,
 };
 use ctsn_core::pose::Frame;
 use ctsn_shaders as shaders;
@@ -107,6 +109,25 @@ impl Record for Features<Id, Id> {
         ];
         let params = shaders::Features { mean, edge_scale, deviation, vertices: n as u32 };
         recorder.dispatch(&shaders::FEATURES, params, &operands, [n, 1], nodes);
+    }
+}
+
+impl Record for Surround<Id, Id, IndexId> {
+    fn record(self, recorder: &mut Recorder) {
+        let Self { potentials, places, joints, weights, transforms, around, nodes } = self;
+        let n = recorder.length(places) / 3;
+        let width = recorder.length(weights) / n;
+        let operands = [
+            recorder.rows(potentials, 3, 4),
+            recorder.rows(places, 3, 4),
+            recorder.pack(("skin joints", joints.0), |it| pack::slots(it.indices(joints), width)),
+            recorder.pack(("skin weights", weights.0), |it| pack::slots(it.values(weights), width)),
+            recorder.rows(transforms, 12, 12),
+            recorder.indexed(around),
+            recorder.rows(nodes, INPUTS, whole(INPUTS)),
+        ];
+        let params = shaders::Surround { vertices: n as u32, width: width as u32, strain: surround::STRAIN };
+        recorder.dispatch(&shaders::SURROUND, params, &operands, [n, 1], nodes);
     }
 }
 

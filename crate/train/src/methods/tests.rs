@@ -35,7 +35,7 @@ fn every_form_learns_and_outcomes_are_kept() {
         let found = outcomes.iter().find(|outcome| outcome.name == name).expect("an entry");
         found.errors.distance.mean
     };
-    for form in ["pbns", "deepsd", "no-mesh", "no-weights", "no-skeleton", "L2-F64-m64-k64"] {
+    for form in ["pbns", "deepsd", "no-mesh", "no-weights", "no-skeleton", "L1-F64-m64-k64"] {
         assert!(error(form) < 0.8 * error("skinning"), "{form}: {} of {}", error(form), error("skinning"));
     }
     let curve = std::fs::read_to_string(folder.path().join("pbns.curve.csv")).expect("a curve");

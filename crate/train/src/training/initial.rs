@@ -2,10 +2,12 @@
 //! The mesh stream sees the body vertex nearest to each cloth vertex (KD-tree). network.md §3, §4.
 
 use super::blur::blur;
+use super::compass::compass;
 use super::{limbs, weights};
 use crate::dataset::{Sample, Setup};
 use crate::{Error, Result};
 use ctsn_core::cpu::Cpu;
+use ctsn_core::model::surroundings::{INPUTS, surroundings};
 use ctsn_core::model::{HostModel, Layer, Linear, Reference, Sizes, Skinning};
 use ctsn_core::network::skin;
 use ctsn_core::operation::Space;
@@ -36,7 +38,7 @@ pub struct Architecture {
 
 impl Default for Architecture {
     fn default() -> Self {
-        Self { embedding: 64, basis: 64, layers: 2, heads: 4, features: 64 }
+        Self { embedding: 64, basis: 64, layers: 1, heads: 4, features: 64 }
     }
 }
 
@@ -64,7 +66,7 @@ pub fn initial(setup: &Setup, train: &[&Sample], architecture: Architecture, see
     let graph = Graph::new(n, &setup.triangles);
     let nearest = setup.nearest()?;
     let body_frames = body_frames(setup, train)?;
-    let inputs = |l: usize| if l == 0 { 3 } else { features };
+    let inputs = |l: usize| if l == 0 { INPUTS } else { features };
     let weights = weights::smooth(setup, &graph, &nearest)?;
     let [skeleton_basis, mesh_basis] = [embedding, basis].map(|count| {
         let mut basis = small(n * 3 * count, &mut rng);
@@ -77,6 +79,7 @@ pub fn initial(setup: &Setup, train: &[&Sample], architecture: Architecture, see
     Ok(HostModel {
         sizes: Sizes { vertices: n, joints, embedding, basis, features, heads },
         reference: reference(setup, &graph, &body_frames)?,
+        surroundings: Some(surroundings(&compass(&setup.template, &setup.triangles, &graph))),
         rig: Arc::new(standardised(setup, &body_frames, &heard)?),
         skinning: weights::trainable(&graph, &weights),
         triangles: setup.triangles.clone(),

@@ -5,6 +5,7 @@ pub(crate) mod adam;
 mod blur;
 mod checkpoint;
 mod coarse;
+mod compass;
 pub mod curve;
 mod duration;
 mod fit;

@@ -14,8 +14,10 @@ use ctsn_core::topology::Graph;
 pub(crate) struct Recording {
     pub tape: Tape,
     pub activations: Activations<Id>,
-    /// The coarse prediction where both streams learn: what is left of the network otherwise learns the truth itself.
+    /// The coarse prediction where both streams run.
     coarse: Option<Id>,
+    /// Whether anything is taught by it: what is left of the network otherwise learns the truth itself.
+    teaches_coarse: bool,
     /// What the polish starts from, where there is one.
     start: Option<Id>,
 }
@@ -33,11 +35,15 @@ impl Recording {
         let mut activations = Activations::keeping(model, |_, length| tape.buffer(&vec![0.0; length]));
         (activations.skeleton_share, activations.mesh_share) = (skeleton_share, mesh_share);
         forward(&mut tape, &recorded, streams, Space::Body, &mut activations);
-        let coarse = (variant.skeleton && streams == Streams::Both).then(|| {
-            let mut coarse = tape.buffer(&vec![0.0; model.sizes.vertices * 3]);
-            let (rest, transforms) = (&activations.coarse, &activations.body_frame);
-            skin(&mut tape, rest, &recorded.skinning, transforms, Space::Body, &mut coarse);
-            coarse
+        let coarse = (streams == Streams::Both).then(|| match &recorded.surroundings {
+            // The mesh stream sees it.
+            Some(_) => activations.reference,
+            None => {
+                let mut coarse = tape.buffer(&vec![0.0; model.sizes.vertices * 3]);
+                let (rest, transforms) = (&activations.coarse, &activations.body_frame);
+                skin(&mut tape, rest, &recorded.skinning, transforms, Space::Body, &mut coarse);
+                coarse
+            }
         });
         let mut start = None;
         if let (Some(cut), Streams::Both) = (&recorded.cut, streams) {
@@ -46,7 +52,7 @@ impl Recording {
             let at = Recorded { offsets, neighbours, squares: cut.squares };
             activations.positions = tape.polish(at, &activations.positions, 3 * model.sizes.vertices, cut.steps);
         }
-        (Self { tape, activations, coarse, start }, shared, learning)
+        (Self { tape, activations, coarse, teaches_coarse: variant.skeleton, start }, shared, learning)
     }
 
     /// A lane with losses behind the predictions.
@@ -57,13 +63,13 @@ impl Recording {
     /// Where the prediction is [n, 3].
     pub fn prediction(&self, prediction: Prediction) -> Id {
         match prediction {
-            Prediction::Coarse => self.coarse.unwrap_or(self.activations.positions),
+            Prediction::Coarse => self.coarse.filter(|_| self.teaches_coarse).unwrap_or(self.activations.positions),
             Prediction::Start => self.start.unwrap_or(self.activations.positions),
             Prediction::Whole => self.activations.positions,
         }
     }
 
-    /// Every prediction once, coarse before whole.
+    /// Every prediction once, coarse before whole, whether or not anything is taught by it.
     pub fn predictions(&self) -> impl Iterator<Item = Id> {
         self.coarse.into_iter().chain(self.start).chain([self.activations.positions])
     }

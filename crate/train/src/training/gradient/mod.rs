@@ -4,6 +4,7 @@
 
 pub mod attend;
 pub mod blend;
+mod ends;
 pub mod gate;
 pub mod linear;
 pub mod polishing;
@@ -55,7 +56,7 @@ pub(super) fn flow(step: &Step) -> Option<Flow> {
             let to = [it.projected, it.edge, it.gate, it.norm_weight, it.norm_bias];
             Some(Flow { through: Some(it.attended), ..Flow::new(it.output, to) })
         }
-        _ => None,
+        other => ends::flow(other),
     }
 }
 
