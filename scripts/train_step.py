@@ -38,6 +38,20 @@ def mlp(file, name):
     return nn.ModuleList(nn.Linear(inputs, outputs) for outputs, inputs in shapes)
 
 
+def walks(compass):
+    """compass [n, 4] -> the vertices around each [n, 16], and what their distances are divided by [16, 1]."""
+    at, around, ends = torch.arange(len(compass)).unsqueeze(1).repeat(1, 4), [], [1, 3, 8, 20]
+    for step in range(1, ends[-1] + 1):
+        at = compass[at, torch.arange(4)]
+        around += [at] if step in ends else []
+    return torch.cat(around, 1), 0.2 * torch.tensor(ends, dtype=torch.float32).repeat_interleave(4).unsqueeze(1)
+
+
+def lbs(blended, points):
+    """blended [b, n, 3, 4], points [b, n, 3] -> [b, n, 3]."""
+    return (blended[..., :3] @ points.unsqueeze(-1)).squeeze(-1) + blended[..., 3]
+
+
 class Network(nn.Module):
     """network.md in PyTorch."""
 
@@ -50,18 +64,24 @@ class Network(nn.Module):
         conv = lambda features, inputs: TransformerConv(inputs, features // heads, heads=heads, beta=True, edge_dim=6)
         self.layers = nn.ModuleList(conv(*shape) for shape in layers)
         self.norms = nn.ModuleList(nn.LayerNorm(features) for features, _ in layers)
-        self.rest, index = file["cloth.rest"], file["reference.index"]
-        self.body, self.body_skin = file["reference.rest"][index], file["reference.weights"][index]
+        self.rest = file["cloth.rest"]
+        self.around, self.steps = walks(file["graph.compass"])
         self.mean, self.std, self.scale = file["reference.mean"], file["reference.std"], edge_scale
         t = file["cloth.triangles"]
         edges = torch.cat([t[:, pair] for pair in ([0, 1], [1, 2], [2, 0], [1, 0], [2, 1], [0, 2])])
         self.edges = torch.unique(edges, dim=0).T.contiguous()
 
-    def lbs(self, weights, transforms, points):
-        """weights [n, J], transforms [b, J, 12], points [b or 1, n, 3] -> [b, n, 3]."""
+    def blend(self, transforms):
+        """transforms [b, J, 12] -> those of the vertices [b, n, 3, 4]."""
         b, joints, _ = transforms.shape
-        blended = (weights @ transforms.transpose(0, 1).reshape(joints, b * 12)).view(-1, b, 3, 4).transpose(0, 1)
-        return (blended[..., :3] @ points.unsqueeze(-1)).squeeze(-1) + blended[..., 3]
+        return (self.skin @ transforms.transpose(0, 1).reshape(joints, b * 12)).view(-1, b, 3, 4).transpose(0, 1)
+
+    def seen(self, blended, x):
+        """What is around each vertex of the coarse cloth x [b, n, 3]: h of the first layer [b, n, 54]."""
+        linear, x_e, rest_e = blended[..., :3], x / self.scale, self.rest / self.scale
+        way = x_e[:, self.around] - x_e.unsqueeze(2)
+        strain = way @ linear - (rest_e[self.around] - rest_e.unsqueeze(1))
+        return torch.cat([(x - self.mean) / self.std, linear[:, :, 1], (strain / self.steps).flatten(2)], 2)
 
     def forward(self, pose, transforms):
         b, n = pose.shape[0], self.rest.shape[0]
@@ -69,9 +89,10 @@ class Network(nn.Module):
         for i, layer in enumerate(self.embedding):
             p = layer(p) if i + 1 == len(self.embedding) else torch.relu(layer(p))
         coarse = self.rest + torch.einsum("bm,mnc->bnc", p, self.skeleton)
+        blended = self.blend(transforms)
         with torch.no_grad():
-            v = self.lbs(self.body_skin, transforms, self.body.unsqueeze(0))
-            h = ((v - self.mean) / self.std).view(b * n, 3)
+            v = lbs(blended, coarse)
+            h = self.seen(blended, v).view(b * n, -1)
             offsets = (torch.arange(b) * n).view(1, b, 1)
             edges = (self.edges.unsqueeze(1) + offsets).view(2, -1)
             source, target = edges
@@ -83,7 +104,7 @@ class Network(nn.Module):
             h = torch.relu(layer(h))
         residual = torch.einsum("bnk,knc->bnc", h.view(b, n, -1), self.mesh)
         fine = coarse.detach() + residual
-        return self.lbs(self.skin, transforms, coarse), self.lbs(self.skin, transforms, fine)
+        return lbs(blended, coarse), lbs(blended, fine)
 
 
 def stepper(file, meta):

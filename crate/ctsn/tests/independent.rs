@@ -141,6 +141,18 @@ fn body_frame(joints: &[Transform], inverse_bind: &[Transform], root: usize) -> 
     (a.iter().map(|a| multiply(&into, a)).collect(), back)
 }
 
+/// Neighbours of each vertex by the edges of triangles [t][3], ascending.
+fn near(n: usize, triangles: &[Vec<f64>]) -> Vec<Vec<usize>> {
+    let mut near = vec![std::collections::BTreeSet::new(); n];
+    for triangle in triangles {
+        let corners: Vec<usize> = triangle.iter().map(|corner| *corner as usize).collect();
+        for (a, b) in corners.iter().flat_map(|a| corners.iter().map(move |b| (*a, *b))).filter(|(a, b)| a != b) {
+            near[a].insert(b);
+        }
+    }
+    near.into_iter().map(|set| set.into_iter().collect()).collect()
+}
+
 /// Positions of one pose [n][3], world. network.md §1–4.
 fn predict(file: &File, ctsn: &Value, joints: &[Transform]) -> Vec<Vec<f64>> {
     let numbers = |list: &Value| -> Vec<f64> {
@@ -156,40 +168,51 @@ fn predict(file: &File, ctsn: &Value, joints: &[Transform]) -> Vec<Vec<f64>> {
     };
     let (rest, weights) = (rows("cloth.rest"), rows("cloth.weights"));
     let n = rest.len();
-    let mut near = vec![std::collections::BTreeSet::new(); n];
-    for triangle in rows("cloth.triangles") {
-        let corners: Vec<usize> = triangle.iter().map(|corner| *corner as usize).collect();
-        for (a, b) in corners.iter().flat_map(|a| corners.iter().map(move |b| (*a, *b))).filter(|(a, b)| a != b) {
-            near[a].insert(b);
-        }
-    }
-    let near: Vec<Vec<usize>> = near.into_iter().map(|set| set.into_iter().collect()).collect();
+    let near = near(n, &rows("cloth.triangles"));
     // The skeleton stream.
     let (mean, std) = (file.get("pose.mean").0, file.get("pose.std").0);
     let pose = transforms.as_flattened().iter().zip(&mean).zip(&std).map(|((x, mean), std)| (x - mean) / std);
     let embedding = file.mlp("embedding", vec![pose.collect()], false).remove(0);
-    // The mesh stream.
-    let (body, of_body) = (rows("reference.rest"), rows("reference.weights"));
-    let index = file.get("reference.index").0;
-    let reference: Vec<Vec<f64>> =
-        index.iter().map(|b| skin(&of_body[*b as usize], &transforms, &body[*b as usize])).collect();
+    let (b, m) = (file.get("skeleton.basis").0, file.get("mesh.basis").0);
+    let blend = |i: usize, weights: &[f64], basis: &[f64], c: usize| -> f64 {
+        weights.iter().enumerate().map(|(j, weight)| weight * basis[(j * n + i) * 3 + c]).sum()
+    };
+    let coarse = |i: usize| -> Vec<f64> { (0..3).map(|c| rest[i][c] + blend(i, &embedding, &b, c)).collect() };
+    // The mesh stream sees the coarse cloth.
+    let reference: Vec<Vec<f64>> = (0..n).map(|i| skin(&weights[i], &transforms, &coarse(i))).collect();
     let (mean, std) = (file.get("reference.mean").0, file.get("reference.std").0);
-    let node = |v: &Vec<f64>| (0..3).map(|c| (v[c] - mean[c]) / std[c]).collect();
     let edge_scale = ctsn["edge_scale"].as_f64().expect("a number");
     let potential = |(v, t): (&Vec<f64>, &Vec<f64>)| v.iter().chain(t).map(|x| x / edge_scale).collect();
     let potentials: Vec<Vec<f64>> = reference.iter().zip(&rest).map(potential).collect();
-    let mut h: Vec<Vec<f64>> = reference.iter().map(node).collect();
+    let compass: Vec<Vec<usize>> =
+        rows("graph.compass").into_iter().map(|row| row.into_iter().map(|j| j as usize).collect()).collect();
+    let node = |i: usize| -> Vec<f64> {
+        let mut node: Vec<f64> = (0..3).map(|c| (reference[i][c] - mean[c]) / std[c]).collect();
+        // Column c of the linear part of the vertex's skinning: where it takes axis c.
+        let column = |c: usize| -> Vec<f64> {
+            (0..3).map(|r| transforms.iter().zip(&weights[i]).map(|(a, w)| w * a[4 * r + c]).sum()).collect()
+        };
+        let columns = [column(0), column(1), column(2)];
+        node.extend(columns.iter().map(|column| column[1]));
+        for steps in [1, 3, 8, 20] {
+            for direction in 0..4 {
+                let to = (0..steps).fold(i, |at, _| compass[at][direction]);
+                let way = sum(&reference[to], &reference[i], -1.0);
+                let strain = |c: usize| (dot(&columns[c], &way) - (rest[to][c] - rest[i][c])) / edge_scale;
+                node.extend((0..3).map(|c| strain(c) / (0.2 * f64::from(steps))));
+            }
+        }
+        node
+    };
+    let mut h: Vec<Vec<f64>> = (0..n).map(node).collect();
     let heads = ctsn["heads"].as_u64().expect("a count") as usize;
     for l in (0..).take_while(|l| file.0.tensor(&format!("graph.{l}.edge.weight")).is_ok()) {
         h = file.attend(l, heads, &h, &potentials, &near);
     }
     let w = file.mlp("vertex", h, true);
-    let (b, m) = (file.get("skeleton.basis").0, file.get("mesh.basis").0);
     let vertex = |i: usize| {
-        let blend = |weights: &[f64], basis: &[f64], c: usize| -> f64 {
-            weights.iter().enumerate().map(|(j, weight)| weight * basis[(j * n + i) * 3 + c]).sum()
-        };
-        let template: Vec<f64> = (0..3).map(|c| rest[i][c] + blend(&embedding, &b, c) + blend(&w[i], &m, c)).collect();
+        let fine: Vec<f64> = (0..3).map(|c| blend(i, &w[i], &m, c)).collect();
+        let template = sum(&coarse(i), &fine, 1.0);
         apply(&back, &skin(&weights[i], &transforms, &template))
     };
     (0..n).map(vertex).collect()

@@ -6,6 +6,7 @@ mod cut;
 pub mod pack;
 mod read;
 mod ride;
+mod skinning;
 pub mod surroundings;
 mod write;
 

@@ -1,6 +1,8 @@
 //! Model file -> model, checking every name, shape and index. network.md §8.
 
-use super::{Body, Cut, HostModel, Layer, Linear, Model, Reference, Ride, Sizes, Skinning, Surface, pack, surroundings};
+use super::{
+    Body, Cut, HostModel, Layer, Linear, Model, Reference, Ride, Sizes, Skinning, Surface, pack, surroundings,
+};
 use super::{CLOTH_WEIGHTS, MESH_BASIS, MOST_STEPS, SKELETON_BASIS, STEPS};
 use crate::error::{Decimal, Error, Result};
 use crate::file::Tensors;
@@ -37,10 +39,7 @@ impl HostModel {
     pub fn read(file: &Tensors) -> Result<Self> {
         let description = describe(file)?;
         let (rest, shape) = file.f32("cloth.rest", &[None, Some(3)])?;
-        let (n, joints) = (shape[0], description.joints.len());
-        if n == 0 || joints == 0 {
-            return Err(Error::NotModel(format!("wanted vertices and joints, found {n} and {joints}")));
-        }
+        let (n, joints) = sizes(shape[0], description.joints.len())?;
         let triangles = file.u32("cloth.triangles", &[None, Some(3)], n)?;
         let dense = file.f32(CLOTH_WEIGHTS, &[Some(n), Some(joints)])?.0;
         let graph = Graph::new(n, &triangles);
@@ -48,8 +47,7 @@ impl HostModel {
         let (mesh_basis, k) = basis(file, MESH_BASIS, &graph)?;
         let embedding = mlp(file, "embedding", 12 * joints, Some(m))?;
         let surroundings = surroundings::read(file, n)?;
-        let inputs = surroundings.as_ref().map_or(3, |_| surroundings::INPUTS);
-        let layers = layers(file, inputs)?;
+        let layers = layers(file, surroundings.is_some())?;
         let features = layers.last().map_or(3, |layer| layer.project.outputs / 4);
         let heads = description.heads;
         if layers.is_empty()
@@ -63,8 +61,10 @@ impl HostModel {
             )));
         }
         let vertex_mlp = mlp(file, "vertex", features, Some(k))?;
-        let widths = vertex_mlp.iter().map(|layer| layer.outputs);
-        let width = widths.fold((4 + 1 + layers.len()).saturating_mul(features), usize::saturating_add);
+        let width = vertex_mlp
+            .iter()
+            .map(|layer| layer.outputs)
+            .fold((4 + 1 + layers.len()).saturating_mul(features), usize::saturating_add);
         if n.saturating_mul(width) > MOST_NUMBERS {
             let wanted = format!("wanted at most {MOST_NUMBERS} numbers between the layers");
             return Err(Error::NotModel(format!("{wanted}, found {width} for each of {n} vertices")));
@@ -96,6 +96,14 @@ impl HostModel {
             rig: Arc::new(rig(file, description)?),
         })
     }
+}
+
+/// Of a model that has some of both.
+fn sizes(vertices: usize, joints: usize) -> Result<(usize, usize)> {
+    if vertices == 0 || joints == 0 {
+        return Err(Error::NotModel(format!("wanted vertices and joints, found {vertices} and {joints}")));
+    }
+    Ok((vertices, joints))
 }
 
 fn describe(file: &Tensors) -> Result<Description> {
@@ -170,24 +178,6 @@ fn reference(file: &Tensors, n: usize, joints: usize, edge_scale: f32) -> Result
     Ok(Reference { rest: gather(&rest, 3), skinning, mean, std, edge_scale })
 }
 
-impl Skinning<Vec<f32>, Vec<u32>> {
-    /// Dense weights [n, joints] -> rows as wide as the fullest vertex needs.
-    pub fn from_dense(dense: &[f32], joints: usize) -> Self {
-        let used = |row: &[f32]| row.iter().filter(|weight| **weight != 0.0).count();
-        let width = dense.chunks_exact(joints).map(used).max().unwrap_or(0).max(1);
-        let mut skinning = Skinning { joints: Vec::new(), weights: Vec::new(), width };
-        for (i, row) in dense.chunks_exact(joints).enumerate() {
-            for (joint, weight) in row.iter().enumerate().filter(|entry| *entry.1 != 0.0) {
-                skinning.joints.push(joint as u32);
-                skinning.weights.push(*weight);
-            }
-            skinning.joints.resize((i + 1) * width, 0);
-            skinning.weights.resize((i + 1) * width, 0.0);
-        }
-        skinning
-    }
-}
-
 /// `[count, n, 3]` in the file -> vertex-major `[n, 3, count]`, so that one vertex's numbers lie together.
 fn basis(file: &Tensors, name: &str, graph: &Graph<Vec<u32>>) -> Result<(Vec<f32>, usize)> {
     let n = graph.offsets.len() - 1;
@@ -239,8 +229,8 @@ fn mlp(file: &Tensors, name: &str, inputs: usize, outputs: Option<usize>) -> Res
     Ok(layers)
 }
 
-fn layers(file: &Tensors, mut inputs: usize) -> Result<Vec<Layer<Vec<f32>>>> {
-    let mut layers = Vec::new();
+fn layers(file: &Tensors, surrounded: bool) -> Result<Vec<Layer<Vec<f32>>>> {
+    let (mut layers, mut inputs) = (Vec::new(), if surrounded { surroundings::INPUTS } else { 3 });
     for l in 0..count(file, "graph") {
         let layer = layer(file, l, inputs)?;
         inputs = layer.project.outputs / 4;

@@ -1,7 +1,7 @@
 //! Model -> model file, the inverse of `read.rs`. network.md §8.
 
 use super::read::{Description, transpose};
-use super::{CLOTH_WEIGHTS, HostModel, Linear, MESH_BASIS, SKELETON_BASIS, Skinning, surroundings};
+use super::{CLOTH_WEIGHTS, HostModel, Linear, MESH_BASIS, SKELETON_BASIS, surroundings};
 use crate::file::{Tensor, Tensors};
 use crate::pose::Frame;
 use miniserde::json;
@@ -167,16 +167,5 @@ impl HostModel {
             writer.learned(&format!("graph.{l}.norm.weight"), &[features], &layer.norm_weight);
             writer.learned(&format!("graph.{l}.norm.bias"), &[features], &layer.norm_bias);
         }
-    }
-}
-
-impl Skinning<Vec<f32>, Vec<u32>> {
-    /// Weights as a dense matrix [n, joints].
-    pub fn to_dense(&self, joints: usize) -> Vec<f32> {
-        let mut dense = vec![0.0; self.weights.len() / self.width * joints];
-        for (slot, (joint, weight)) in self.joints.iter().zip(&self.weights).enumerate() {
-            dense[slot / self.width * joints + *joint as usize] += weight;
-        }
-        dense
     }
 }

@@ -1,12 +1,7 @@
-//! What the mesh stream sees around each vertex of the coarse cloth: the places of 16 vertices from its own, turned back
-//! by its skinning, less where they are at rest. All of it is zero where the cloth moves rigidly, whichever way a limb
-//! points, so what is learned of one pose holds for others. network.md §3. Twin: shaders/surround.wgsl.
-//!
-//! Trained alike (16 epochs), error on watched poses: a stranger's T-shirt of 4,002 vertices 5.01 mm, 9.82° of what the
-//! paper's mesh stream sees, the body under the cloth; 4.59 mm, 9.25° of this; after nine epochs 5.45 mm, 10.1° and 4.95
-//! mm, 9.5°, and 5.20 mm, 9.8° of the body under the cloth seen in this way. A robe of 2,991 vertices 30.6 mm, 16.2°;
-//! 29.4 mm, 15.7°; where the body lies from the cloth beside it: 29.5 mm, 15.7°. Vertices at measured distances in place
-//! of walks along the edges: the same.
+//! What the mesh stream sees around each vertex of the coarse cloth: the places of 16 vertices from its own, turned
+//! back by its skinning, less where they are at rest. The latter are zero where the cloth moves rigidly, whichever way
+//! a limb points, so what is learned of one pose holds for others: docs/decisions/training.md has figures, and what
+//! else was tried. network.md §3. Twin: shaders/surround.wgsl.
 
 use crate::cpu::threads::of;
 use crate::cpu::{Cpu, Kernel};
