@@ -220,7 +220,7 @@ impl<B, I> Model<B, I> {
                 std: self.reference.std,
                 edge_scale: self.reference.edge_scale,
             },
-            surroundings: self.surroundings.as_ref().map(|around| indices(around)),
+            surroundings: self.surroundings.as_ref().map(&mut *indices),
             embedding: self.embedding.iter().map(|layer| layer.map(values)).collect(),
             skeleton_basis: values(&self.skeleton_basis),
             layers: self.layers.iter().map(|layer| layer.map(values)).collect(),
