@@ -59,8 +59,8 @@ const SHAPES: [[usize; 7]; 7] = [
 #[test]
 fn parity_with_the_cpu_at_awkward_sizes() {
     let (both, mut rng) = (both(), fastrand::Rng::with_seed(3));
-    // With a range that the poses leave, residuals fade; without, they count in full. The mesh stream sees the body under
-    // the cloth, or the coarse cloth around each vertex.
+    // With a range that the poses leave, residuals fade; without, they count in full. The mesh stream sees the body
+    // under the cloth, or the coarse cloth around each vertex.
     let kinds = [(true, false), (false, false), (true, true), (false, true)];
     let cases = || SHAPES.into_iter().flat_map(move |shape| kinds.map(|kind| (shape, kind)));
     for (gpu, (shape, (range, surrounded))) in both.iter().flat_map(|gpu| cases().map(move |case| (gpu, case))) {

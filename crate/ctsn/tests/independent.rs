@@ -141,6 +141,21 @@ fn body_frame(joints: &[Transform], inverse_bind: &[Transform], root: usize) -> 
     (a.iter().map(|a| multiply(&into, a)).collect(), back)
 }
 
+/// What is seen of the cloth around vertex `i`, by the columns of the linear part of its skinning, in metres.
+fn around<'a>(
+    compass: &'a [Vec<usize>],
+    i: usize,
+    [now, rest]: [&'a [Vec<f64>]; 2],
+    columns: &'a [Vec<f64>; 3],
+) -> impl Iterator<Item = f64> + 'a {
+    let walks = [1, 3, 8, 20].into_iter().flat_map(|steps| (0..4).map(move |direction| (steps, direction)));
+    walks.flat_map(move |(steps, direction)| {
+        let to = (0..steps).fold(i, |at, _| compass[at][direction]);
+        let way = sum(&now[to], &now[i], -1.0);
+        (0..3).map(move |c| (dot(&columns[c], &way) - (rest[to][c] - rest[i][c])) / (0.2 * f64::from(steps)))
+    })
+}
+
 /// Neighbours of each vertex by the edges of triangles [t][3], ascending.
 fn near(n: usize, triangles: &[Vec<f64>]) -> Vec<Vec<usize>> {
     let mut near = vec![std::collections::BTreeSet::new(); n];
@@ -194,14 +209,7 @@ fn predict(file: &File, ctsn: &Value, joints: &[Transform]) -> Vec<Vec<f64>> {
         };
         let columns = [column(0), column(1), column(2)];
         node.extend(columns.iter().map(|column| column[1]));
-        for steps in [1, 3, 8, 20] {
-            for direction in 0..4 {
-                let to = (0..steps).fold(i, |at, _| compass[at][direction]);
-                let way = sum(&reference[to], &reference[i], -1.0);
-                let strain = |c: usize| (dot(&columns[c], &way) - (rest[to][c] - rest[i][c])) / edge_scale;
-                node.extend((0..3).map(|c| strain(c) / (0.2 * f64::from(steps))));
-            }
-        }
+        node.extend(around(&compass, i, [&reference, &rest], &columns).map(|strain| strain / edge_scale));
         node
     };
     let mut h: Vec<Vec<f64>> = (0..n).map(node).collect();
