@@ -100,11 +100,11 @@ fn a_study_prints_its_tables_goes_on_and_refuses_another_s_outcomes() {
     }
     let page = std::fs::read_to_string(folder.path("study/study.html")).expect("a page");
     assert!(page.contains("DeePSD-form") && !page.contains("<script"));
-    let model = std::fs::metadata(folder.path("study/L2-F64-m5-k64.safetensors")).expect("a model").len();
+    let model = std::fs::metadata(folder.path("study/L1-F64-m5-k64.safetensors")).expect("a model").len();
     let json: Value =
         serde_json::from_slice(&std::fs::read(folder.path("study/study.json")).expect("outcomes")).expect("JSON");
     let outcomes = json.as_array().expect("a list");
-    let small = outcomes.iter().find(|outcome| outcome["name"] == "L2-F64-m5-k64").expect("an outcome");
+    let small = outcomes.iter().find(|outcome| outcome["name"] == "L1-F64-m5-k64").expect("an outcome");
     assert_eq!((outcomes.len(), small["bytes"].as_u64()), (8, Some(model)), "bytes are the file's");
     // Without one of its outcomes the study makes that one anew, and the tables are the same.
     std::fs::remove_file(folder.path("study/pbns.json")).expect("an outcome");
