@@ -8,12 +8,13 @@ use ctsn_core::model::{HostModel, Layer, Linear};
 /// LayerNorm's eps.
 const EPSILON: f32 = ctsn_core::cpu::network::gate::EPSILON;
 
-/// Body vertices under the cloth V, or the coarse cloth X [3, n], and transforms [12, J] -> Δ_M [3, n].
-pub fn mesh(graph: &mut Graph, model: &HostModel, order: &Order, [reference, transforms]: [&Value; 2]) -> Value {
+/// Body vertices under the cloth V, or the coarse cloth X [3, n], and transforms of the vertices [3, 4, n] -> Δ_M
+/// [3, n].
+pub fn mesh(graph: &mut Graph, model: &HostModel, order: &Order, [reference, blended]: [&Value; 2]) -> Value {
     let (n, k) = (model.sizes.vertices, model.sizes.basis);
     let (mut h, potentials) = features(graph, model, order, reference);
     if let Some(around) = &model.surroundings {
-        h = surround(graph, model, order, around, [&h, &potentials, transforms]);
+        h = surround(graph, order, around, [&h, &potentials, blended]);
     }
     let batches = order.batches(&model.graph);
     for (l, layer) in model.layers.iter().enumerate() {

@@ -65,20 +65,22 @@ fn network(graph: &mut Graph, model: &HostModel, joints: &Value) -> Value {
     };
     let residual = skeleton(graph, model, &order, &pose);
     let mut template = moved(graph, &rest, residual);
+    let blended = blend(graph, model, &order, &pose.transforms, &model.skinning);
     if model.mesh_stream {
         graph.stage("reference");
-        let body = graph.floats(&[3, n], &order.columns(&model.reference.rest, 3));
-        let (at, skinning) = match &model.surroundings {
-            Some(_) => (&template, &model.skinning),
-            None => (&body, &model.reference.skinning),
+        let seen = if model.surroundings.is_some() {
+            skin(graph, &template, &blended, n)
+        } else {
+            let body = graph.floats(&[3, n], &order.columns(&model.reference.rest, 3));
+            let under = blend(graph, model, &order, &pose.transforms, &model.reference.skinning);
+            skin(graph, &body, &under, n)
         };
-        let seen = skin(graph, model, &order, [at, &pose.transforms], skinning);
-        let residual = mesh::mesh(graph, model, &order, [&seen, &pose.transforms]);
+        let residual = mesh::mesh(graph, model, &order, [&seen, &blended]);
         template = moved(graph, &template, residual);
     }
     graph.stage("template");
     graph.stage("positions");
-    let positions = skin(graph, model, &order, [&template, &pose.transforms], &model.skinning);
+    let positions = skin(graph, &template, &blended, n);
     let positions = pose.back(graph, &positions);
     let positions = graph.transpose(&positions, &[1, 0]);
     let places = graph.indices(&[n], order.places.iter().copied());
@@ -108,20 +110,24 @@ fn skeleton(graph: &mut Graph, model: &HostModel, order: &Order, pose: &Pose) ->
     graph.reshape(&residual, &[3, n])
 }
 
-/// Points at rest [3, n], transforms [12, J] -> posed [3, n], in the body frame. network.md §4.
-fn skin(
+/// Transforms [12, J] -> those of the vertices [3, 4, n]. network.md §4.
+fn blend(
     graph: &mut Graph,
     model: &HostModel,
     order: &Order,
-    [rest, transforms]: [&Value; 2],
+    transforms: &Value,
     skinning: &Skinning<Vec<f32>, Vec<u32>>,
 ) -> Value {
     let (n, joints) = (model.sizes.vertices, model.sizes.joints);
     let weights = graph.floats(&[joints, n], &order.columns(&skinning.to_dense(joints), joints));
     let blended = graph.node("MatMul", &[transforms, &weights]);
-    let blended = graph.reshape(&blended, &[3, 4, n]);
+    graph.reshape(&blended, &[3, 4, n])
+}
+
+/// Points at rest [3, n], transforms of the vertices [3, 4, n] -> posed [3, n], in the body frame.
+fn skin(graph: &mut Graph, rest: &Value, blended: &Value, n: usize) -> Value {
     let ones = graph.floats(&[1, n], &vec![1.0; n]);
     let rest = graph.concat(&[rest, &ones], 0);
-    let moved = graph.node("Mul", &[&blended, &rest]);
+    let moved = graph.node("Mul", &[blended, &rest]);
     graph.sum(&moved, 1)
 }

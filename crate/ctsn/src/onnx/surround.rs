@@ -3,22 +3,12 @@
 use super::graph::{Graph, Value};
 use super::order::Order;
 use ctsn_core::cpu::network::surround::STRAIN;
-use ctsn_core::model::HostModel;
 use ctsn_core::model::surroundings::{AROUND, DIRECTIONS, INPUTS, STEPS};
 
-/// Places, standardised [n, 3], potentials [n, 6], transforms [12, J] -> h⁰ [n, 54].
-pub fn surround(
-    graph: &mut Graph,
-    model: &HostModel,
-    order: &Order,
-    around: &[u32],
-    [places, potentials, transforms]: [&Value; 3],
-) -> Value {
-    let (n, joints) = (model.sizes.vertices, model.sizes.joints);
-    let weights = graph.floats(&[joints, n], &order.columns(&model.skinning.to_dense(joints), joints));
-    let blended = graph.node("MatMul", &[transforms, &weights]);
-    let blended = graph.reshape(&blended, &[3, 4, n]);
-    let linear = graph.slice(&blended, 1, 0..3);
+/// Places, standardised [n, 3], potentials [n, 6], transforms of the vertices [3, 4, n] -> h⁰ [n, 54].
+pub fn surround(graph: &mut Graph, order: &Order, around: &[u32], [places, potentials, blended]: [&Value; 3]) -> Value {
+    let n = order.places.len();
+    let linear = graph.slice(blended, 1, 0..3);
     let linear = graph.transpose(&linear, &[2, 0, 1]);
     let rows = order.vertices.iter().flat_map(|vertex| &around[vertex * AROUND..][..AROUND]);
     let around = graph.indices(&[n, AROUND], rows.map(|vertex| order.places[*vertex as usize]));
