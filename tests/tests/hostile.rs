@@ -264,7 +264,7 @@ fn descriptions_that_lie_are_refused() {
         })
     };
     let cases = [
-        ("\"version\": 1", "\"version\": 2", "not_model", "wanted version 1, found 2"),
+        ("\"version\": 1", "\"version\": 3", "not_model", "wanted version 1 or 2, found 3"),
         ("\"hip_yaw\"", "\"toe\"", "not_model", "toe"),
         ("\"root\": 0", "\"root\": 3", "not_model", "root 3"),
         ("\"root\": 0", "\"root\": -1", "not_model", "root"),

@@ -33,6 +33,7 @@ fn a_packed_model_predicts_what_the_model_does() {
     }
 }
 
+const BASES: [&str; 2] = [SKELETON_BASIS, MESH_BASIS];
 /// Half a step, and what f32 rounds in the product.
 const HALF: f32 = 0.502;
 
@@ -44,7 +45,7 @@ fn every_number_is_within_half_a_step_of_what_it_was() {
         let mut file = Tensors::parse(small.model).expect("a model").into_owned();
         let names = packable(&file);
         assert!(names.contains(&"embedding.0.weight".to_owned()) && names.contains(&"cloth.weights".to_owned()));
-        for name in names.iter().filter(|name| *name != SKELETON_BASIS) {
+        for name in names.iter().filter(|name| !BASES.contains(&name.as_str())) {
             quantise(&mut file, name, levels, None).expect("a real tensor");
             let shape = &before.tensors[name].shape;
             let any = vec![None; shape.len()];
@@ -62,27 +63,53 @@ fn every_number_is_within_half_a_step_of_what_it_was() {
     }
 }
 
-/// The skeleton stream's basis is kept as differences from neighbours; what is read is the rounded basis all the same.
+/// Bases are kept as differences from neighbours; what is read is the rounded basis all the same.
 #[test]
 fn a_basis_survives_being_foretold() {
     let before = HostModel::parse(ALL[1].model).expect("a model");
-    let importance: Vec<f32> = (0..before.sizes.embedding).map(|row| (row % 3) as f32).collect();
-    let mut file = Tensors::parse(ALL[1].model).expect("a model").into_owned();
-    quantise(&mut file, SKELETON_BASIS, 4000, Some(&importance)).expect("a basis");
-    let after = HostModel::read(&file).expect("a model");
-    let scale = file.tensors["skeleton.basis.scale"].to_f32().expect("scales");
-    for (at, (was, is)) in before.skeleton_basis.iter().zip(&after.skeleton_basis).enumerate() {
-        let row = at % before.sizes.embedding;
-        // A matrix that nothing multiplies needs no numbers.
-        let wanted = if importance[row] == 0.0 { was.abs() } else { HALF * scale[row] };
-        assert!((was - is).abs() <= wanted + 1e-12, "row {row}: {was} became {is}");
+    for name in BASES {
+        let of = |model: &HostModel| {
+            let arrays = model.parameters();
+            arrays.into_iter().find(|(array, _)| array == name).expect("a basis").1.clone()
+        };
+        let mut file = Tensors::parse(ALL[1].model).expect("a model").into_owned();
+        let importance: Vec<f32> = (0..file.tensors[name].shape[0]).map(|row| (row % 3) as f32).collect();
+        quantise(&mut file, name, 4000, Some(&importance)).expect("a basis");
+        let after = HostModel::read(&file).expect("a model");
+        let scale = file.tensors[&format!("{name}.scale")].to_f32().expect("scales");
+        for (at, (was, is)) in of(&before).iter().zip(&of(&after)).enumerate() {
+            let row = at % importance.len();
+            // A matrix that nothing multiplies needs no numbers.
+            let wanted = if importance[row] == 0.0 { was.abs() } else { HALF * scale[row] };
+            assert!((was - is).abs() <= wanted + 1e-12, "{name} {row}: {was} became {is}");
+        }
+        let again = {
+            let mut file = Tensors::parse(&file_bytes(file.clone())).expect("a file").into_owned();
+            quantise(&mut file, name, 4000, Some(&importance)).expect("a basis");
+            HostModel::read(&file).expect("a model")
+        };
+        assert!(largest(&of(&again), &of(&after)) <= 1e-6, "{name} packed twice");
     }
-    let again = {
-        let mut file = Tensors::parse(&file_bytes(file.clone())).expect("a file").into_owned();
-        quantise(&mut file, SKELETON_BASIS, 4000, Some(&importance)).expect("a basis");
-        HostModel::read(&file).expect("a model")
-    };
-    assert!(largest(&again.skeleton_basis, &after.skeleton_basis) <= 1e-6, "packed twice");
+}
+
+/// Files packed before 2026-11-28 are of version 1, and keep the mesh stream's basis as it is.
+#[test]
+fn a_file_of_version_1_has_no_differences_in_its_mesh_basis() {
+    let small = packed(ALL[1].model, 500);
+    assert!(small.metadata["ctsn"].contains("\"version\":2"));
+    let whole = |file: &Tensors| file.whole(MESH_BASIS, &[None; 3]).expect("whole numbers").expect("whole numbers").0;
+    let mut older = small.clone();
+    let version = |text: &str| text.replace("\"version\":2", "\"version\":1");
+    older.metadata.insert("ctsn".to_owned(), version(&small.metadata["ctsn"]));
+    let [newer, older] = [&small, &older].map(|file| HostModel::read(file).expect("a model"));
+    let scale = small.tensors["mesh.basis.scale"].to_f32().expect("scales");
+    let (count, differences) = (scale.len(), whole(&small));
+    let width = differences.len() / count;
+    for (at, difference) in differences.iter().enumerate() {
+        let (row, place) = (at / width, at % width);
+        assert_eq!(older.mesh_basis[place * count + row], difference * scale[row]);
+    }
+    assert_ne!(older.mesh_basis, newer.mesh_basis);
 }
 
 #[test]
