@@ -42,7 +42,7 @@ pub fn quantise(file: &mut Tensors, name: &str, levels: u32, importance: Option<
     let graph = if is_basis { Some(cloth(file, shape[1])?) } else { None };
     let any = vec![None; shape.len()];
     let values = match &graph {
-        Some(graph) => basis(file, name, graph, describe(file)?.version)?.0,
+        Some(graph) => basis(file, name, graph, name == SKELETON_BASIS || describe(file)?.version > 1)?.0,
         None => file.f32(name, &any)?.0,
     };
     let rows = if by_rows(name) { shape[0] } else { 1 };
@@ -86,32 +86,26 @@ fn cloth(file: &Tensors, n: usize) -> Result<Graph<Vec<u32>>> {
     Ok(Graph::new(n, &file.u32("cloth.triangles", &[None, Some(3)], n)?))
 }
 
-/// Whether a file of that version keeps the whole numbers of a basis as differences. Bases are learned smoothly, so
-/// that takes fewer bytes: a fifth to a quarter fewer of the mesh stream's. (It took more of those that were learned
-/// roughly, until 2026-11-24: in files of version 1 the mesh stream's are as they are.)
-fn has_differences(name: &str, version: u32) -> bool {
-    name == SKELETON_BASIS || (name == MESH_BASIS && version >= DIFFERENCES)
-}
-
-/// A basis [count, n, 3], and how many matrices it has. Where it [`has_differences`], its whole numbers are kept less
-/// what their neighbours let expect.
+/// A basis [count, n, 3], and how many matrices it has. Its whole numbers, if it has `differences`, are kept less what
+/// their neighbours let expect. Bases are learned smoothly, so that takes fewer bytes: a fifth to a quarter fewer of
+/// the mesh stream's. (It took more of those that were learned roughly: files of version 1 have it as it is.)
 pub(super) fn basis(
     file: &Tensors,
     name: &str,
     graph: &Graph<Vec<u32>>,
-    version: u32,
+    differences: bool,
 ) -> Result<(Vec<f32>, usize)> {
     let shape = [None, Some(graph.offsets.len() - 1), Some(3)];
-    if has_differences(name, version)
-        && let Some((mut whole, scale)) = file.whole(name, &shape)?
-    {
+    let Some((mut whole, scale)) = file.whole(name, &shape)? else {
+        let (values, shape) = file.f32(name, &shape)?;
+        return Ok((values, shape[0]));
+    };
+    if differences {
         add_expected(graph, &mut whole);
-        let values = scaled(whole, &scale);
-        finite(name, &values)?;
-        return Ok((values, file.get(name)?.shape[0]));
     }
-    let (values, shape) = file.f32(name, &shape)?;
-    Ok((values, shape[0]))
+    let values = scaled(whole, &scale);
+    finite(name, &values)?;
+    Ok((values, file.get(name)?.shape[0]))
 }
 
 /// The neighbours of each vertex that come before it.

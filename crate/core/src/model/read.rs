@@ -43,8 +43,8 @@ impl HostModel {
         let triangles = file.u32("cloth.triangles", &[None, Some(3)], n)?;
         let dense = file.f32(CLOTH_WEIGHTS, &[Some(n), Some(joints)])?.0;
         let graph = Graph::new(n, &triangles);
-        let (skeleton_basis, m) = basis(file, SKELETON_BASIS, &graph, description.version)?;
-        let (mesh_basis, k) = basis(file, MESH_BASIS, &graph, description.version)?;
+        let (skeleton_basis, m) = basis(file, SKELETON_BASIS, &graph, true)?;
+        let (mesh_basis, k) = basis(file, MESH_BASIS, &graph, description.version > 1)?;
         let embedding = mlp(file, "embedding", 12 * joints, Some(m))?;
         let surroundings = surroundings::read(file, n)?;
         let layers = layers(file, surroundings.is_some())?;
@@ -113,7 +113,7 @@ pub(super) fn describe(file: &Tensors) -> Result<Description> {
             "__metadata__.ctsn lacks version, frame, root, joints, inverse_bind, heads or edge_scale".to_owned(),
         )
     })?;
-    if ![1, pack::DIFFERENCES].contains(&description.version) {
+    if !(1..=pack::DIFFERENCES).contains(&description.version) {
         return Err(Error::NotModel(format!("wanted version 1 or 2, found {}", description.version)));
     }
     Ok(description)
@@ -179,9 +179,9 @@ fn reference(file: &Tensors, n: usize, joints: usize, edge_scale: f32) -> Result
 }
 
 /// `[count, n, 3]` in the file -> vertex-major `[n, 3, count]`, so that one vertex's numbers lie together.
-fn basis(file: &Tensors, name: &str, graph: &Graph<Vec<u32>>, version: u32) -> Result<(Vec<f32>, usize)> {
+fn basis(file: &Tensors, name: &str, graph: &Graph<Vec<u32>>, differences: bool) -> Result<(Vec<f32>, usize)> {
     let n = graph.offsets.len() - 1;
-    let (values, count) = pack::basis(file, name, graph, version)?;
+    let (values, count) = pack::basis(file, name, graph, differences)?;
     if count == 0 {
         return Err(Error::NotModel(format!("{name} holds no matrix")));
     }
