@@ -94,7 +94,7 @@ async function change(browser, origin, draws) {
   const measured = await page.evaluate(async (changes) => {
     const demo = window.ctsnDemo;
     const [[, garments]] = Object.entries(demo.cast);
-    const memory = async () => ({ bytes: (await performance.measureUserAgentSpecificMemory()).bytes, ...demo.memory() });
+    const memory = async () => ({ bytes: (await performance.measureUserAgentSpecificMemory()).bytes, ...(await demo.memory()) });
     for (let i = 0; i < 2 * garments.length; i++) await demo.wear([garments[i % garments.length]]);
     const tasks = [];
     new PerformanceObserver((list) => tasks.push(...list.getEntries().map(({ duration }) => duration))).observe({ type: 'longtask' });

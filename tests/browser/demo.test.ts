@@ -151,8 +151,6 @@ test('figures that come and go leave the GPU as it was, what they wear of their 
   await expect.poll(() => page.getByRole('button', { name: 'adorned' }).getAttribute('aria-pressed'), patience).toBe('true');
   const show = async (figure: string) => {
     await ask(page, (demo, figure) => demo.choose(figure), figure);
-    // A sketch has less on the GPU than what it gives way to.
-    await ask(page, (demo) => demo.finished(), null);
     return ask(page, (demo) => demo.memory(), null);
   };
   const andy = await show('andy');

@@ -67,28 +67,29 @@ fn every_number_is_within_half_a_step_of_what_it_was() {
 #[test]
 fn a_basis_survives_being_foretold() {
     let before = HostModel::parse(ALL[1].model).expect("a model");
-    for name in BASES {
+    let levels = [7, 127, 128, 1000, 4000, MOST_LEVELS];
+    for (name, levels) in BASES.into_iter().flat_map(|name| levels.map(|levels| (name, levels))) {
         let of = |model: &HostModel| {
             let arrays = model.parameters();
             arrays.into_iter().find(|(array, _)| array == name).expect("a basis").1.clone()
         };
         let mut file = Tensors::parse(ALL[1].model).expect("a model").into_owned();
         let importance: Vec<f32> = (0..file.tensors[name].shape[0]).map(|row| (row % 3) as f32).collect();
-        quantise(&mut file, name, 4000, Some(&importance)).expect("a basis");
+        quantise(&mut file, name, levels, Some(&importance)).expect("a basis");
         let after = HostModel::read(&file).expect("a model");
         let scale = file.tensors[&format!("{name}.scale")].to_f32().expect("scales");
         for (at, (was, is)) in of(&before).iter().zip(&of(&after)).enumerate() {
             let row = at % importance.len();
             // A matrix that nothing multiplies needs no numbers.
             let wanted = if importance[row] == 0.0 { was.abs() } else { HALF * scale[row] };
-            assert!((was - is).abs() <= wanted + 1e-12, "{name} {row}: {was} became {is}");
+            assert!((was - is).abs() <= wanted + 1e-12, "{name} {row}, {levels} levels: {was} became {is}");
         }
         let again = {
             let mut file = Tensors::parse(&file_bytes(file.clone())).expect("a file").into_owned();
-            quantise(&mut file, name, 4000, Some(&importance)).expect("a basis");
+            quantise(&mut file, name, levels, Some(&importance)).expect("a basis");
             HostModel::read(&file).expect("a model")
         };
-        assert!(largest(&of(&again), &of(&after)) <= 1e-6, "{name} packed twice");
+        assert!(largest(&of(&again), &of(&after)) <= 1e-6, "{name} packed twice, {levels} levels");
     }
 }
 

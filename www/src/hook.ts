@@ -53,7 +53,7 @@ export interface Demo {
   /** Settles when the page draws it all as it is to look, no sketch of it. */
   finished(): Promise<void>;
   /** Geometries and textures that the renderer keeps on the GPU. */
-  memory(): { geometries: number; textures: number };
+  memory(): Promise<{ geometries: number; textures: number }>;
   /** Where the cloth is predicted, and why not on the GPU. */
   backend: Backend;
   fallback: string | undefined;

@@ -149,7 +149,9 @@ function offer(page: TryOn, arrange: () => void): void {
     },
     complete: () => page.dressed.complete,
     finished: () => page.stage.finished,
-    memory() {
+    async memory() {
+      // A sketch has less there than what it gives way to.
+      await page.stage.finished;
       // What was put on a moment ago is on the GPU once it is drawn.
       page.draw();
       const { geometries, textures } = page.stage.renderer.info.memory;

@@ -42,7 +42,7 @@ pub fn quantise(file: &mut Tensors, name: &str, levels: u32, importance: Option<
     let graph = if is_basis { Some(cloth(file, shape[1])?) } else { None };
     let any = vec![None; shape.len()];
     let values = match &graph {
-        Some(graph) => basis(file, name, graph, name == SKELETON_BASIS || describe(file)?.version > 1)?.0,
+        Some(graph) => basis(file, name, graph, name == SKELETON_BASIS || describe(file)?.version >= DIFFERENCES)?.0,
         None => file.f32(name, &any)?.0,
     };
     let rows = if by_rows(name) { shape[0] } else { 1 };

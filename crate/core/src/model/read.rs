@@ -44,7 +44,7 @@ impl HostModel {
         let dense = file.f32(CLOTH_WEIGHTS, &[Some(n), Some(joints)])?.0;
         let graph = Graph::new(n, &triangles);
         let (skeleton_basis, m) = basis(file, SKELETON_BASIS, &graph, true)?;
-        let (mesh_basis, k) = basis(file, MESH_BASIS, &graph, description.version > 1)?;
+        let (mesh_basis, k) = basis(file, MESH_BASIS, &graph, description.version >= pack::DIFFERENCES)?;
         let embedding = mlp(file, "embedding", 12 * joints, Some(m))?;
         let surroundings = surroundings::read(file, n)?;
         let layers = layers(file, surroundings.is_some())?;
