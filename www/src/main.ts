@@ -1,13 +1,12 @@
 import type { BackendChoice, Progress } from 'ctsn';
 import cast from 'virtual:cast';
-import { capture } from './capture.js';
 import { TryOn } from './demo.js';
 import { element, formatBytes } from './dom.js';
 import { run, tell } from './failure.js';
-import { RATE } from './figure/character.js';
 import type { Demo } from './hook.js';
 import { layOut } from './layout.js';
 import { Clips } from './motion/clips.js';
+import { offer } from './offer.js';
 import { readAddress, writeAddress, type Scene } from './share/address.js';
 import { acceptFiles } from './share/drop.js';
 import { save, takePicture } from './share/picture.js';
@@ -95,70 +94,7 @@ async function start(): Promise<void> {
   keepAddress(page, address.searchParams);
   listen(page);
   page.run();
-  offer(page, arrange);
-}
-
-/** The page's handle. */
-function offer(page: TryOn, arrange: () => void): void {
-  const captured = async () => {
-    await Promise.all([hook.complete!(), page.stage.finished]);
-    // What was changed a moment ago waits for the next animation frame to be drawn.
-    page.predict();
-    await page.dressed.wardrobe.settled();
-    return capture(page);
-  };
-  Object.defineProperties(hook, {
-    predictions: { get: () => page.predictions },
-    milliseconds: { get: () => page.cost.milliseconds },
-    backend: { get: () => page.dressed.models[0]?.backend },
-    fallback: { get: () => page.dressed.models[0]?.fallback },
-    bare: { get: () => !page.dressed.wardrobe.children.some(({ visible }) => visible) },
-    clips: {
-      get: () => {
-        const { character } = page.dressed;
-        return Object.fromEntries(character.clips.map((clip) => [clip, Math.floor(character.length(clip) * RATE)]));
-      },
-    },
-  });
-  Object.assign(hook, {
-    cast: Object.fromEntries(page.figures.map(({ id, garments }) => [id, garments.map(({ id }) => id)])),
-    show(clip, frame, quality = 'full') {
-      page.stop(clip, frame, quality);
-      return captured();
-    },
-    capture: captured,
-    async wear(garments) {
-      await page.wear(page.dressed.entry.garments.filter(({ id }) => garments.includes(id)));
-      while (page.dressed.wardrobe.children.length > garments.length) {
-        await new Promise((resolve) => setTimeout(resolve, 50));
-        page.draw();
-      }
-    },
-    choose: async (figure) => void (await page.choose(page.figures.find(({ id }) => id === figure)!)),
-    async picture(width, height) {
-      await page.stage.finished;
-      // The controls are not in it.
-      page.stage.frame({ left: 0, right: 0, top: 0, bottom: 0 });
-      page.draw();
-      const blob = await takePicture(page.stage.renderer.domElement, { width, height, type: 'image/webp', backdrop: false });
-      arrange();
-      return new Promise((resolve) => {
-        const reader = Object.assign(new FileReader(), { onload: () => resolve(reader.result as string) });
-        reader.readAsDataURL(blob);
-      });
-    },
-    complete: () => page.dressed.complete,
-    finished: () => page.stage.finished,
-    async memory() {
-      // A sketch has less there than what it gives way to.
-      await page.stage.finished;
-      // What was put on a moment ago is on the GPU once it is drawn.
-      page.draw();
-      const { geometries, textures } = page.stage.renderer.info.memory;
-      return { geometries, textures };
-    },
-    ready: true,
-  } satisfies Partial<Demo>);
+  offer(hook, page, arrange);
 }
 
 run(start, hook);
