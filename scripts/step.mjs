@@ -19,6 +19,8 @@ export function say(text) {
 export class Stop extends Error {}
 
 const bins = at('node_modules', '.bin');
+/** Signals that end a script from outside. */
+const ENDS = ['SIGTERM', 'SIGHUP'];
 
 /**
  * Runs a program to its end and answers { status, output }; `output` is what it wrote when `capture` or `tee` is set.
@@ -41,9 +43,13 @@ export async function run(program, args, { capture = false, tee = false, env = {
       });
     }
   }
+  // Ctrl-C reaches the program by itself; what ends this script alone would leave it running.
+  const end = (signal) => child.kill(signal);
+  ENDS.forEach((signal) => process.on(signal, end));
   // A program that is not there raises 'error'; to the caller that is a status like any other.
-  const [status] = await once(child, 'close').catch((error) => [error.code ?? 'failed']);
-  return { status, output };
+  const [status, signal] = await once(child, 'close').catch((error) => [error.code ?? 'failed']);
+  ENDS.forEach((name) => process.off(name, end));
+  return { status: status ?? signal, output };
 }
 
 /** Runs a program and stops the script when it fails. */
