@@ -43,13 +43,16 @@ export async function run(program, args, { capture = false, tee = false, env = {
       });
     }
   }
-  // Ctrl-C reaches the program by itself; what ends this script alone would leave it running.
-  const end = (signal) => child.kill(signal);
-  ENDS.forEach((signal) => process.on(signal, end));
+  // Ctrl-C reaches the program by itself; of what ends this script alone it hears from us, before we go.
+  const end = (signal) => {
+    child.once('close', () => process.kill(process.pid, signal));
+    child.kill(signal);
+  };
+  ENDS.forEach((signal) => process.once(signal, end));
   // A program that is not there raises 'error'; to the caller that is a status like any other.
-  const [status, signal] = await once(child, 'close').catch((error) => [error.code ?? 'failed']);
-  ENDS.forEach((name) => process.off(name, end));
-  return { status: status ?? signal, output };
+  const [status] = await once(child, 'close').catch((error) => [error.code ?? 'failed']);
+  ENDS.forEach((signal) => process.off(signal, end));
+  return { status, output };
 }
 
 /** Runs a program and stops the script when it fails. */
