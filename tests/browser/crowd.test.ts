@@ -1,7 +1,7 @@
 // Fifty dressed characters on one page, in headless Chromium with its software renderer.
 import type { Page } from 'playwright-core';
 import { afterAll, afterEach, beforeAll, expect, test } from 'vitest';
-import { announcements, out, Site } from './page.js';
+import { announcements, out, plain, Site } from './page.js';
 
 let site: Site;
 beforeAll(async () => (site = await Site.open()));
@@ -37,6 +37,7 @@ test('fifty in the coarse quality; auto gives some of them more, and what is out
 
 test('it rests where motion is not wanted, plays and is paused by a button, and is turned by keys', async () => {
   const { page, complaints } = await site.visit('crowd.html?figure=andy&count=2&quality=full&renderer=webgl', (bare) => bare.emulateMedia({ reducedMotion: 'reduce' }));
+  await plain(page);
   const frames = async (more: number) => {
     const now = await page.evaluate(() => window.ctsnCrowd!.frames);
     await page.waitForFunction((count) => window.ctsnCrowd!.frames >= count, now + more);

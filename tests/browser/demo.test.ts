@@ -7,7 +7,7 @@ import type { Quality } from 'ctsn';
 import { adorn } from './glb.js';
 import { predictNatively } from './native.js';
 import type { Demo } from '../../www/src/hook.js';
-import { announcements, ask, out, Site, weigh } from './page.js';
+import { announcements, ask, out, plain, Site, weigh } from './page.js';
 import { difference, shareBeyond } from './safetensors.js';
 import tolerances from './tolerances.json' with { type: 'json' };
 
@@ -99,6 +99,7 @@ test('the three sources of the cloth differ on the page, and are seen side by si
   expect(difference(found['full']!, found['coarse']!)).toBeGreaterThan(1e-4);
   expect(difference(found['coarse']!, found['skinned']!)).toBeGreaterThan(1e-3);
   await ask(page, (demo, { clip, frame }) => demo.show(clip, frame), { clip, frame });
+  await plain(page);
   const strip = () => page.screenshot({ clip: { x: 300, y: 0, width: 360, height: 500 } });
   const alone = await strip();
   await open(page, 'Compare');
@@ -112,6 +113,7 @@ test('the three sources of the cloth differ on the page, and are seen side by si
 
 test('beside a map the rival wears its fabric', async () => {
   const { page, complaints } = await site.visit('?pose=dance:40');
+  await plain(page);
   await ask(page, (demo) => demo.finished(), null);
   await open(page, 'Compare');
   await page.getByLabel('with plain skinning').check({ force: true });

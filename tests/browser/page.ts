@@ -74,6 +74,11 @@ export class Site {
   }
 }
 
+/** For pictures that are compared, a background of one colour: software draws the gradient anew by a level now and then. */
+export async function plain(page: Page): Promise<void> {
+  await page.addStyleTag({ content: 'body { background: gray }' });
+}
+
 /** Bytes of the site's files of these names, from a server that compresses text: of text, and of all. */
 export function weigh(names: string[]): { text: number; all: number } {
   const weights = { text: 0, all: 0 };

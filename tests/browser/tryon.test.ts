@@ -6,7 +6,7 @@ import { fileURLToPath } from 'node:url';
 import type { Page } from 'playwright-core';
 import { afterAll, afterEach, beforeAll, expect, test } from 'vitest';
 import { withServer } from '../../scripts/page.mjs';
-import { ask, out, Site } from './page.js';
+import { ask, out, plain, Site } from './page.js';
 import { difference } from './safetensors.js';
 
 const file = (name: string) => fileURLToPath(new URL(`../../www/${name}`, import.meta.url));
@@ -170,6 +170,7 @@ test('clips are chosen by picture; the pictures leave pose and view as they were
   expect(difference(after.positions, before.positions)).toBe(0);
   expect(new URL(page.url()).searchParams.get('view') ?? '-20,12,2').toBe('-20,12,2');
   await page.screenshot({ path: `${out}/clips.png` });
+  await plain(page);
   const walking = await shown();
   await page.getByRole('button', { name: 'dance', exact: true }).click();
   await expect.poll(() => page.locator('#clip').inputValue(), patience).toBe('dance');
