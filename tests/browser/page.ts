@@ -74,7 +74,7 @@ export class Site {
   }
 }
 
-/** For pictures that are compared, a background of one colour: software draws the gradient anew by a level now and then. */
+/** For pictures that are compared, one colour behind: software draws the gradient anew by a level now and then. */
 export async function plain(page: Page): Promise<void> {
   await page.addStyleTag({ content: 'body { background: gray }' });
 }
