@@ -14,7 +14,7 @@ mod teacher;
 mod tests;
 mod timing;
 
-use crate::dataset::{Record, Sample, Setup, Split, coarse_path, mixed_path, pose_path, twin_path};
+use crate::dataset::{Record, Sample, Split, coarse_path, mixed_path, pose_path, twin_path};
 use crate::judging::check_joints;
 use crate::{Error, Result};
 pub use adopted::adopt;
@@ -44,7 +44,7 @@ pub enum Kind {
     Frame,
     /// A frame a little changed, for the noise floor.
     Twin,
-    /// Limbs of several frames, [`mixed`]; its number stands where others have a frame number.
+    /// Limbs of several frames ([`Mixer`]); its number stands where others have a frame number.
     Mixed,
     /// A pose of which a fine garment is simulated thinned, for the skeleton stream; likewise.
     Coarse,
@@ -76,12 +76,7 @@ pub struct Run<'a> {
 impl<'a> Run<'a> {
     /// Prepares dataset `folder`, draping the garment unless that was done before.
     pub fn new(request: Request<'a>, folder: &Path) -> Result<Self> {
-        let poses: usize = request.character.clips.iter().map(|clip| clip.poses.len()).sum();
-        if poses == 0 {
-            let name = request.names[0];
-            let reason = format!("{name} has no clip, wanted at least one: there is no pose to simulate");
-            return Err(Error::Simulation(reason));
-        }
+        let poses = request.frames()?;
         let frames = if request.mixed + request.coarse > 0 { learned(request.character) } else { Vec::new() };
         let coarse = (request.coarse > 0).then(|| CoarsePoses::new(&frames));
         let mixer = Mixer::new(request.character, frames, FURTHER);
@@ -99,16 +94,14 @@ impl<'a> Run<'a> {
         }
         let settings = request.settings.clone();
         let simulator = Simulator::new(request.character, request.garment, request.material.1, settings)?;
-        let found = Setup::read(folder)?;
-        match &found {
-            Some(found) => {
-                found.check_same(&wanted, folder)?;
-                wanted.template.clone_from(&found.template);
-            }
-            None => wanted.template = numbers(&simulator.drape()?),
+        let mut begun = wanted.take_drape(folder)?;
+        if !begun {
+            wanted.template = numbers(&simulator.drape()?);
+            // Another machine may have begun the folder meanwhile.
+            begun = wanted.take_drape(folder)?;
         }
         let teacher = request.teacher.map(|model| Teacher::new(model, &wanted)).transpose()?;
-        if found.is_none() {
+        if !begun {
             wanted.write(folder)?;
         }
         let template = vertices(&wanted.template);

@@ -133,9 +133,12 @@ impl Simulator {
             return Some("wanted finite forces, found none".into());
         }
         let Settings { residual: wanted, drift: least, .. } = self.settings;
-        let still = 1e3 * drift;
+        let state = match drift.is_finite() {
+            true => format!("still moving by {:.2} mm", 1e3 * drift),
+            false => "held by short steps".into(),
+        };
         (residual > wanted && drift > least)
-            .then(|| format!("residual: wanted below {wanted}, found {residual:.4}, still moving by {still:.2} mm"))
+            .then(|| format!("residual: wanted below {wanted}, found {residual:.4}, {state}"))
     }
 
     fn judge(&self, outcome: &Outcome, inside: Inside) -> Status {

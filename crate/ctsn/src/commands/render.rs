@@ -9,6 +9,7 @@ use ctsn_rig::gltf;
 use ctsn_rig::path::body_frame;
 use ctsn_rig::{joints, vertices};
 use ctsn_train::dataset::{Sample, Setup, pose_path};
+use ctsn_train::judging::check_same;
 use std::path::PathBuf;
 
 /// Draw front, side and back of a character in a model's predicted cloth
@@ -41,6 +42,7 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<()> {
     let model = model(&arguments.model)?;
     let dataset = arguments.truth.as_deref().map(Setup::existing).transpose()?;
+    dataset.as_ref().map_or(Ok(()), |setup| check_same(&model, setup))?;
     let rate = dataset.as_ref().map_or(arguments.rate, |setup| setup.description.rate);
     let character = gltf::read_character(&arguments.character, rate)?;
     let clip = character.clip(&arguments.clip)?;

@@ -95,7 +95,13 @@ pub struct Options {
 }
 
 pub fn run(arguments: &Arguments) -> Result<()> {
-    along(&character(&arguments.character, &arguments.options)?, arguments, None).map(drop)
+    some(&along(&character(&arguments.character, &arguments.options)?, arguments, None)?)
+}
+
+/// Refuses a dataset of which poses were simulated, and none was kept.
+pub fn some(report: &Report) -> Result<()> {
+    ensure!(report.kept > 0 || report.missing == report.frames, "no pose converged; the reasons stand above");
+    Ok(())
 }
 
 /// Simulates the clips of this form of the character, beginning no pose after `until`; what is in the dataset then.
@@ -128,9 +134,6 @@ pub fn along(character: &Character, arguments: &Arguments, until: Option<Instant
     let report = Report::new(output)?;
     report.write(output)?;
     println!("{report}");
-    if report.kept == 0 && report.missing < report.frames {
-        bail!("no pose converged; the reasons stand above");
-    }
     Ok(report)
 }
 
@@ -161,7 +164,7 @@ pub fn unsimulated(character: &Path, garment: &Path) -> Result<Dataset> {
         garment: &cloth,
         names: names.each_ref().map(String::as_str),
         material: ("cotton", Material::named("cotton")?),
-        settings: Settings { attached: cloth.pins.clone(), ..Settings::default() },
+        settings: Settings { attached: cloth.pins.clone(), pinched: PINCHED, ..Settings::default() },
         teacher: None,
         shard: Shard::WHOLE,
         poses: None,

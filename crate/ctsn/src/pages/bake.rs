@@ -19,7 +19,7 @@ const cloth = new Cloth(model, gltf.scene, material);
 scene.add(cloth);
 
 renderer.setAnimationLoop(() => {
-  mixer.update(clock.getDelta());
+  mixer.update(timer.update().getDelta()); // three's Timer
   cloth.update();
   renderer.render(scene, camera);
 });";

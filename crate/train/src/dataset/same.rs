@@ -6,6 +6,17 @@ use serde::Serialize;
 use std::path::Path;
 
 impl Setup {
+    /// Takes the draped garment of what is in `folder` already, and nothing else; whether there was anything.
+    ///
+    /// # Errors
+    /// As of [`check_same`](Self::check_same).
+    pub fn take_drape(&mut self, folder: &Path) -> Result<bool> {
+        let Some(found) = Self::read(folder)? else { return Ok(false) };
+        found.check_same(self, folder)?;
+        self.template = found.template;
+        Ok(true)
+    }
+
     /// Refuses to go on with a dataset made from something else than `wanted`, and says what differs.
     pub fn check_same(&self, wanted: &Self, folder: &Path) -> Result<()> {
         let mut same = wanted.clone();

@@ -101,8 +101,14 @@ pub fn paths(folder: &Path) -> Result<Vec<PathBuf>> {
         paths.push(entry.map_err(io)?.path());
     }
     paths.retain(|path| path.extension().is_some_and(|extension| extension == "safetensors"));
-    paths.sort();
+    paths.sort_by_cached_key(|path| (numbered(path), path.clone()));
     Ok(paths)
+}
+
+/// The numbers in a name. As text, clip 1000 would stand before clip 101.
+fn numbered(path: &Path) -> Vec<usize> {
+    let name = path.file_stem().unwrap_or_default().to_string_lossy();
+    name.split('-').map(|part| part.parse().unwrap_or(usize::MAX)).collect()
 }
 
 impl Sample {
@@ -125,5 +131,19 @@ impl Sample {
         };
         let pose = values("pose.joints", &[Some(joints), Some(3), Some(4)])?;
         Ok(Self { record, joints: pose, truth: values("truth.positions", &[Some(vertices), Some(3)])? })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_thousand_clips_stay_in_order() {
+        let name = |clip| pose_path(Path::new(""), clip, 7);
+        let mut names = [1000, 2, 101, 99, 100].map(name);
+        names.sort_by_cached_key(|path| numbered(path));
+        assert_eq!(names, [2, 99, 100, 101, 1000].map(name));
+        assert_eq!(numbered(&mixed_path(Path::new(""), 12)), [12]);
     }
 }

@@ -21,7 +21,10 @@ impl Split {
     pub fn of(clips: usize, clip: usize, frame: usize, length: usize) -> Self {
         // A few clips cannot be parted: the test would see motion of one kind only.
         let (test, validation) = match clips {
-            0..10 => (frame * 10 >= length * 9, frame * 100 >= length * 81),
+            // Of a clip of fewer than ten frames the last one, and the one before it.
+            0..10 => {
+                (frame * 10 >= length * 9 || frame + 1 >= length, frame * 100 >= length * 81 || frame + 2 >= length)
+            }
             // Spread over the clips: neighbours are often of one kind.
             _ => (clip >= clips - clips.div_ceil(10), clip % 10 == 4),
         };

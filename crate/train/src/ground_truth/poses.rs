@@ -12,8 +12,9 @@ use ctsn_rig::{SkinnedMesh, joints, numbers, vertices};
 /// The frames to learn from. Of the request, what it says of poses does not count.
 ///
 /// # Errors
-/// As of [`Run::new`](super::Run::new): the garment cannot be draped.
+/// As of [`Run::new`](super::Run::new): no pose, or the garment cannot be draped.
 pub fn unsimulated(request: &Request) -> Result<Dataset> {
+    request.frames()?;
     let mut setup = request.setup();
     let simulator = Simulator::new(request.character, request.garment, request.material.1, request.settings.clone())?;
     setup.template = numbers(&simulator.drape()?);

@@ -3,6 +3,7 @@
 use super::Shard;
 use crate::dataset::digest;
 use crate::dataset::{Description, Drawn, Setup, stored_surface};
+use crate::{Error, Result};
 use ctsn_cloth::simulate::{Fabric, Material, Settings};
 use ctsn_core::model::{HostModel, Storage, Surface};
 use ctsn_rig::{Character, Garment, SkinWeights, numbers, row_major};
@@ -35,6 +36,18 @@ pub struct Request<'a> {
 }
 
 impl Request<'_> {
+    /// How many frames the clips have; refuses a character without any.
+    pub(super) fn frames(&self) -> Result<usize> {
+        match self.character.clips.iter().map(|clip| clip.poses.len()).sum() {
+            0 => {
+                let reason =
+                    format!("{} has no clip, wanted at least one: there is no pose to simulate", self.names[0]);
+                Err(Error::Simulation(reason))
+            }
+            frames => Ok(frames),
+        }
+    }
+
     /// The setup of the dataset, its template not yet draped.
     pub(super) fn setup(&self) -> Setup {
         let (character, garment) = (self.character, self.garment);

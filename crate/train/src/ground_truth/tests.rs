@@ -1,6 +1,7 @@
 //! What a dataset knows of its source; how poses are shared among shards; twins and mixed poses.
 
 use super::*;
+use crate::dataset::Setup;
 use ctsn_cloth::simulate::{Material, Settings};
 use ctsn_rig::{Character, Clip, Garment, Joint, Mesh, SkinnedMesh, Surface};
 use glam::DAffine3;

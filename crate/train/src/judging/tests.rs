@@ -103,6 +103,7 @@ fn what_cannot_be_judged_is_named() {
     };
     let mut few = dataset.clone();
     few.samples.truncate(5);
+    few.setup.description.frames = vec![POSES];
     refused(&model, &few, Split::Test, &["unseen poses", "last tenth", "found none", "5 poses of 1 clips"]);
     few.samples.clear();
     refused(&model, &few, Split::Train, &["poses to learn from", "found none"]);

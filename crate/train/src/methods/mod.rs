@@ -181,7 +181,8 @@ impl<'a> Study<'a> {
         }
         let end = trainer.fit(&self.slices.validation, &files, |_, row| progress(row))?;
         match (end, trainer.best()) {
-            (End::Diverged(error), None) => Err(error),
+            // A row of it would tell of the method what its training is to blame for.
+            (End::Diverged(error), _) => Err(error),
             (_, None) => Err(Error::Training("wanted at least one epoch, found 0".to_owned())),
             (_, Some((best, model))) => {
                 std::fs::remove_file(&files.checkpoint).ok();

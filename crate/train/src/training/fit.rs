@@ -106,13 +106,13 @@ impl Trainer {
     }
 
     /// Whether the epochs are done or the time is up: an epoch that would end later than half its time past the budget
-    /// is not begun.
+    /// is not begun, but the first one is.
     fn ended(&self) -> bool {
         match self.settings.budget {
             None => self.epoch >= self.settings.epochs(),
             Some(budget) => {
                 let seconds = self.seconds();
-                seconds + 0.5 * seconds / self.epoch.max(1) as f64 >= budget.as_secs_f64()
+                self.epoch > 0 && seconds + 0.5 * seconds / self.epoch as f64 >= budget.as_secs_f64()
             }
         }
     }

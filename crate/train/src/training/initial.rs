@@ -57,7 +57,7 @@ const UNHEARD: f32 = 1e6;
 pub fn initial(setup: &Setup, train: &[&Sample], architecture: Architecture, seed: u64) -> Result<HostModel> {
     let (n, joints) = (setup.template.len() / 3, setup.description.joints.len());
     let Architecture { embedding, basis, layers, heads, features } = architecture;
-    if heads == 0 || features % heads != 0 || layers == 0 || embedding == 0 || basis == 0 {
+    if heads == 0 || features == 0 || features % heads != 0 || layers == 0 || embedding == 0 || basis == 0 {
         return Err(Error::Training(format!(
             "heads must divide features and all sizes be positive, found {architecture:?}"
         )));

@@ -1,5 +1,6 @@
 //! Fine cloth laid on a coarse state of the same garment.
 
+use crate::simulate::matrix::outer;
 use ctsn_core::topology::Graph;
 use ctsn_rig::Mesh;
 use ctsn_rig::mesh::triangle::{closest, cross};
@@ -54,9 +55,9 @@ impl Embedding {
             let legs = self.rings.of(v).iter().map(|&w| w as usize);
             let (sum, square) = legs.fold((DMat3::ZERO, 0.0), |(sum, square), w| {
                 let (from, to) = (rest[w] - rest[v], x[w] - x[v]);
-                (sum + dyad(to, from), square + from.length_squared())
+                (sum + outer(to, from), square + from.length_squared())
             });
-            nearest_rotation(sum + dyad(normals[1][v], normals[0][v]) * (0.5 * square))
+            nearest_rotation(sum + outer(normals[1][v], normals[0][v]) * (0.5 * square))
         };
         let turns: Vec<DMat3> = (0..x.len()).map(turn).collect();
         let place = |(start, bound): (&DVec3, &[(usize, f64); 3])| {
@@ -73,11 +74,6 @@ impl Embedding {
         let edge = edges.sum::<f64>() / (3 * self.mesh.triangles.len()) as f64;
         apart / fine.len() as f64 / edge
     }
-}
-
-/// `a bᵀ`.
-fn dyad(a: DVec3, b: DVec3) -> DMat3 {
-    DMat3::from_cols(a * b.x, a * b.y, a * b.z)
 }
 
 /// The rotation nearest to a matrix (Higham's iteration for the polar decomposition); none where it has no inverse or

@@ -6,7 +6,7 @@ use crate::pages;
 use anyhow::{Context, Result};
 use ctsn_cloth::garment::{load, rehearse, sketch};
 use ctsn_rig::Character;
-use ctsn_rig::file::write;
+use ctsn_rig::file::{read, write};
 use ctsn_train::ground_truth::Shard;
 use ctsn_train::report::Report;
 use indicatif::HumanDuration;
@@ -23,7 +23,7 @@ const SHARES: [f64; 4] = [0.17, 0.05, 0.53, 0.22];
 pub const FEWEST: usize = 60;
 /// Poses by which the time of one is measured.
 const TIMED: usize = 6;
-/// The file in a dataset that tells that its step was not interrupted.
+/// The file in a dataset that tells that its step was not interrupted, and in how many seconds' bake.
 const DONE: &str = "simulated";
 
 /// Poses of which a dataset is to be made, for the forecast.
@@ -129,41 +129,45 @@ impl Steps<'_> {
     }
 
     /// Simulates into a dataset for the share of the time that is this step's, less what the steps before took too
-    /// long; longer where a training wants more poses. What was interrupted has that time again. A dataset that was
-    /// finished in time is kept: with more poses it would be another, and all that follows had to be done again.
+    /// long; longer where a training wants more poses, up to `most` of them. What was interrupted has that time again.
+    /// A dataset that was finished in time is kept: with more poses it would be another, and all that follows had to be
+    /// done again. Where a longer time is asked for, poses are added for what it is longer, but not to those of the
+    /// first model.
     ///
     /// # Errors
-    /// A dataset of another character, garment, cloth or motion.
+    /// A dataset of another character, garment, cloth or motion; no pose that was kept.
     pub fn simulate(
         &self,
         step: usize,
         options: &simulate::Options,
+        most: usize,
         dataset: &Path,
         from: Option<&Path>,
     ) -> Result<()> {
         let Some(budget) = self.budget else {
-            return self.along(options, dataset, from, None).map(drop);
+            return simulate::some(&self.along(options, dataset, from, None)?);
         };
         let done = dataset.join(DONE);
-        if done.exists() {
+        let had = done.exists().then(|| read(&done)).transpose()?.map(|seconds| given(&seconds));
+        if had.is_some_and(|had| step == 0 || budget <= had) {
             println!("{}: has been simulated already", dataset.display());
             return self.along(options, dataset, from, Some(self.begun)).map(drop);
         }
-        let until = Instant::now() + budget.mul_f64(SHARES[step]);
-        let until = until.min(self.begun + budget.mul_f64(SHARES[..=step].iter().sum()));
-        let all = options.poses.unwrap_or(usize::MAX);
-        let mut poses = FEWEST.min(all);
+        let more = budget - had.unwrap_or_default();
+        let until = Instant::now() + more.mul_f64(SHARES[step]);
+        let until = until.min(self.begun + more.mul_f64(SHARES[..=step].iter().sum()));
+        let mut poses = FEWEST.min(most);
         loop {
             let enough = simulate::Options { poses: Some(poses), mixed: None, coarse: None, ..options.clone() };
             let kept = self.along(&enough, dataset, from, None)?.kept;
-            if kept >= FEWEST || poses == all {
+            if kept >= FEWEST || poses == most {
                 break;
             }
             // As many are left out of the next ones.
-            poses = (poses + (FEWEST - kept) * poses / kept.max(1)).min(all);
+            poses = (poses + (FEWEST - kept) * poses / kept.max(1)).min(most);
         }
-        self.along(options, dataset, from, Some(until))?;
-        Ok(write(&done, b"")?)
+        simulate::some(&self.along(options, dataset, from, Some(until))?)?;
+        Ok(write(&done, budget.as_secs_f64().to_string().as_bytes())?)
     }
 
     /// Trains on a dataset, for the share of the time that is this step's.
@@ -180,4 +184,10 @@ impl Steps<'_> {
             training,
         })
     }
+}
+
+/// The time of the bake in which a dataset was finished. An older version did not tell: its datasets are kept.
+fn given(seconds: &[u8]) -> Duration {
+    let seconds = str::from_utf8(seconds).ok().and_then(|text| text.parse().ok());
+    seconds.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok()).unwrap_or(Duration::MAX)
 }

@@ -222,6 +222,24 @@ fn validation_is_a_tenth_of_the_training_clips() {
 }
 
 #[test]
+fn short_clips_have_frames_of_every_kind() {
+    let short = dataset(9, 6);
+    let count = |split: Split| short.split(split).len();
+    assert_eq!([Split::Train, Split::Validation, Split::Test].map(count), [36, 9, 9]);
+}
+
+#[test]
+fn sizes_of_nothing_are_refused() {
+    let (setup, samples) = synthetic::dataset(60, 3, 8);
+    let samples: Vec<&Sample> = samples.iter().collect();
+    for (features, heads) in [(0, 2), (8, 0), (9, 2)] {
+        let architecture = Architecture { embedding: 8, basis: 16, layers: 1, heads, features };
+        let message = initial(&setup, &samples, architecture, 1).unwrap_err().to_string();
+        assert!(message.contains("all sizes be positive") && message.contains(&format!("heads: {heads}")), "{message}");
+    }
+}
+
+#[test]
 fn too_few_poses_and_empty_splits_are_refused() {
     let mut dataset = dataset(20, 3);
     let refused = |dataset: &Dataset| slices(dataset).unwrap_err().to_string();
