@@ -133,6 +133,17 @@ test('beside a map the rival wears its fabric', async () => {
   expect(complaints).toEqual([]);
 });
 
+test('garments chosen one right after the other are all worn', async () => {
+  const { page, complaints } = await site.visit('?wear=dress&pose=walk:40');
+  await page.route('**/andy-t*.safetensors*', async (route) => {
+    await new Promise((resolve) => setTimeout(resolve, 1000));
+    await route.continue();
+  });
+  for (const name of ['T-shirt', 'Trousers']) await page.locator('#garments').getByRole('button', { name }).click();
+  await expect.poll(() => page.locator('#garments [aria-pressed=true]').allTextContents(), patience).toEqual(['T-shirt', 'Trousers']);
+  expect(complaints).toEqual([]);
+});
+
 test('maps tell of fit, stretch and confidence, with a legend', async () => {
   const { page, complaints } = await site.visit('?pose=dance:40');
   await open(page, 'Maps');

@@ -150,7 +150,11 @@ test('another garment takes the place of one, or leaves it as it was', async () 
   const other = await loadModel(renameJoints('small_f16', rename));
   const stranger = await loadModel(renameJoints('small', (_, at) => `stranger ${at}`));
   expect(() => cloth.setModel(stranger)).toThrow(/no bone "stranger 0"/);
+  const spent = await loadModel(renameJoints('small', rename));
+  spent.dispose();
+  expect(() => cloth.setModel(spent)).toThrow(/dispose/);
   expect([cloth.model, cloth.geometry]).toEqual([model, before]);
+  cloth.update();
   let disposed = 0;
   before.addEventListener('dispose', () => disposed++);
   expect(cloth.setModel(other).model).toBe(other);

@@ -108,6 +108,17 @@ test('what a skipped prediction is refused for, the next update throws', async (
   model.dispose();
 });
 
+test('a GPU without room for the buffers of a cloth is asked for them once, and the cloth read back', async () => {
+  const device = new FakeDevice('lent');
+  const model = await load(device);
+  const asked = vi.spyOn(model, 'createBuffers').mockRejectedValue(new Error('no room'));
+  const renderer = { backend: { isWebGPUBackend: true, device: device.lent } };
+  const cloth = new Cloth(model, characterOf(model.joints, tiny.poses[0]!), new MeshBasicMaterial(), { renderer });
+  for (let update = 0; update < 3; update++) await cloth.update().settled();
+  expect([asked.mock.calls.length, cloth.zeroCopy, gpu.submitted.length]).toEqual([1, false, 2]);
+  model.dispose();
+});
+
 test('a device whose adoption was refused may be tried again', async () => {
   gpu.refusals = 1;
   const device = new FakeDevice('lent');

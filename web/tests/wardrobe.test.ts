@@ -48,7 +48,7 @@ function pass(wardrobe: Wardrobe, seconds: number) {
 test('the first garment is there at once; the next comes before it, and only then does it go', async () => {
   const { wardrobe } = await wardrobeOf({ fade: 1 });
   expect(await wardrobe.wear('shirt')).toBe(true);
-  expect([seen(wardrobe), wardrobe.worn]).toEqual([{ shirt: 1 }, ['shirt']]);
+  expect([seen(wardrobe), wardrobe.worn, wardrobe.changing]).toEqual([{ shirt: 1 }, ['shirt'], false]);
   pass(wardrobe, 0);
   const shirt = wardrobe.cloth('shirt')!;
   // A page that has nothing to draw for a minute.
@@ -58,9 +58,9 @@ test('the first garment is there at once; the next comes before it, and only the
   expect(pass(wardrobe, 0.25)).toEqual({ shirt: 1, dress: 0.5 });
   expect(pass(wardrobe, 0.25)).toEqual({ shirt: 1, dress: 1 });
   expect(pass(wardrobe, 0.25)).toEqual({ shirt: 0.5, dress: 1 });
-  expect(shirt.model.disposed).toBe(false);
+  expect([shirt.model.disposed, wardrobe.changing]).toEqual([false, true]);
   expect(pass(wardrobe, 0.25)).toEqual({ dress: 1 });
-  expect(shirt.model.disposed).toBe(true);
+  expect([shirt.model.disposed, wardrobe.changing]).toEqual([true, false]);
   // The page's material is on the cloth again, as it was.
   expect([wardrobe.cloth('dress')!.material, material.opacity, material.transparent]).toEqual([material, 0.8, false]);
   await wardrobe.wear([]);

@@ -116,6 +116,19 @@ test('a model in a worker that was loaded progressive tells when its folds are t
   model.dispose();
 });
 
+test('a worker that may not be started is told of', async () => {
+  vi.stubGlobal('Worker', class {
+    constructor() {
+      throw new DOMException('from another origin', 'SecurityError');
+    }
+  });
+  await expect(loadModel('https://shop.test/shirt.safetensors')).rejects.toMatchObject({
+    code: 'worker',
+    message: expect.stringMatching(/serve\.js does not start: from another origin/) as string,
+  });
+  vi.unstubAllGlobals();
+});
+
 test('how to ask for a file is posted as far as it can be, and its signal ends the load', async () => {
   const posted: unknown[] = [];
   vi.stubGlobal('Worker', class {

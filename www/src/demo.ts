@@ -1,7 +1,7 @@
 import type { BackendChoice, Progress, Quality } from 'ctsn';
 import type { Figure, GarmentEntry } from './cast/catalogue.js';
 import { combine } from './cast/catalogue.js';
-import { isOwn, ownFigure, ownGarment } from './cast/own.js';
+import { isOwn } from './cast/own.js';
 import { Rail } from './cast/rail.js';
 import { Rivals } from './compare/rivals.js';
 import { Simulated } from './compare/simulated.js';
@@ -25,6 +25,9 @@ const BLEND = 12;
 /** Bones that may touch the floor. */
 const LOW = /foot|toe|paw|hand/i;
 
+/** Hears of the bytes of a file. */
+type OnProgress = (file: string, progress: Progress) => void;
+
 /** The running page: moves the figure, predicts what it wears and draws both, once per animation frame. */
 export class TryOn {
   readonly stage: Stage;
@@ -47,8 +50,7 @@ export class TryOn {
   readonly #rivals: Rivals;
   readonly #simulated = new Simulated();
   #changed = true;
-  /** Until when a change of garments is seen, in milliseconds. */
-  #fading = 0;
+  /** Whether cloth has come from the GPU since it was last drawn. */
   #arrived = false;
   #turn = 0;
 
@@ -63,8 +65,17 @@ export class TryOn {
   }
 
   /** Shows a figure in these garments; what was shown stays until it is there. Overtaken calls end unseen. */
-  async choose(entry: Figure, wear = entry.garments.slice(0, 1), onProgress?: (file: string, progress: Progress) => void): Promise<Dressed> {
+  async choose(entry: Figure, wear = entry.garments.slice(0, 1), onProgress?: OnProgress): Promise<Dressed> {
     const turn = ++this.#turn;
+    try {
+      return await this.#come(turn, entry, wear, onProgress);
+    } catch (error) {
+      if (turn !== this.#turn) return this.dressed;
+      throw error;
+    }
+  }
+
+  async #come(turn: number, entry: Figure, wear: readonly GarmentEntry[], onProgress: OnProgress | undefined): Promise<Dressed> {
     // What draws it all is compiled while the files come; behind them, where that takes long and nothing is seen.
     const [first] = wear;
     const isSlow = first && this.predictions === 0 ? this.stage.isSlow(this.#samples.piece(first)) : Promise.resolve(false);
@@ -85,6 +96,8 @@ export class TryOn {
       if (came.status === 'rejected') throw came.reason;
       return this.dressed;
     }
+    // It may have been chosen anew while the figure came.
+    if (dressed.backend !== this.cost.backend) void dressed.compute(this.cost.backend).catch(tell);
     this.#replace(dressed);
     if (slow) this.stage.sketch(dressed.complete, () => Promise.all([prepare(), this.stage.prepare(character.scene)]));
     return dressed;
@@ -92,10 +105,8 @@ export class TryOn {
 
   /** Puts these garments on. */
   async wear(entries: readonly GarmentEntry[]): Promise<void> {
-    const { dressed } = this;
-    if (!(await dressed.wear(entries))) return;
-    this.#fading = performance.now() + 600;
-    this.#tell();
+    if (!(await this.dressed.wear(entries))) return;
+    this.tell();
   }
 
   /** Runs until the page closes. While nothing moves, nothing is drawn. */
@@ -109,7 +120,7 @@ export class TryOn {
       if (playing) this.dressed.character.advance(seconds * this.transport.speed);
       const moved = this.stage.turn();
       if (moved) this.onScene();
-      if (moved || playing || this.#changed || performance.now() < this.#fading) this.draw();
+      if (moved || playing || this.#changed || this.dressed.wardrobe.changing) this.draw();
       else if (this.#arrived) this.#render();
     });
   }
@@ -177,40 +188,7 @@ export class TryOn {
   /** Takes another fabric for a garment. */
   look(garment: GarmentEntry, look: Parameters<Dressed['dress']>[1]): void {
     this.dressed.dress(garment, look);
-    this.#tell();
-  }
-
-  /** A figure or a garment of one's own, the figures first. */
-  async bring(files: readonly File[]): Promise<void> {
-    const kind = (file: File) => /\.(glb|safetensors)$/i.exec(file.name)?.[1]?.toLowerCase();
-    const strange = files.find((file) => !kind(file));
-    if (strange) throw new Error(`${strange.name}: a character (.glb) or a model of a garment (.safetensors) is wanted`);
-    for (const file of files.filter((file) => kind(file) === 'glb')) {
-      const entry = ownFigure(file);
-      await this.choose(entry);
-      this.figures.push(entry);
-      this.#tell();
-    }
-    for (const file of files.filter((file) => kind(file) === 'safetensors')) await this.#bringGarment(file);
-  }
-
-  async #bringGarment(file: File): Promise<void> {
-    const { dressed } = this;
-    const entry = ownGarment(file);
-    const before = dressed.entry.garments.find((one) => isOwn(one.file) && one.name === entry.name);
-    // A new version under a name that no garment has had: the wardrobe goes by names.
-    if (before) entry.id = `${before.id}'`;
-    dressed.add(entry);
-    try {
-      await this.wear([entry]);
-    } catch (error) {
-      dressed.remove(entry);
-      throw error;
-    }
-    // It is still worn where another call has overtaken this one.
-    if (!before || dressed.worn.some(({ entry }) => entry === before)) return;
-    dressed.remove(before);
-    this.#tell();
+    this.tell();
   }
 
   #render(): void {
@@ -244,12 +222,13 @@ export class TryOn {
     if (dressed.entry.view) this.stage.look(readView(dressed.entry.view));
     this.#poser.hold(bones, dressed.hip);
     this.transport.offer(clips);
-    dressed.onModel = () => this.#tell();
+    dressed.onModel = () => this.tell();
     dressed.onFailure = tell;
-    this.#tell();
+    this.tell();
   }
 
-  #tell(): void {
+  /** Has the controls show what is there and worn. */
+  tell(): void {
     const { entry, worn, looks } = this.dressed;
     this.#changed = true;
     this.#rail.show(this.figures, entry, worn.map(({ entry }) => entry));
@@ -264,7 +243,7 @@ export class TryOn {
   #listen(): void {
     const attempt = (work: Promise<unknown>) => void work.catch(tell);
     this.#rail.onFigure = (figure) => attempt(this.choose(figure));
-    this.#rail.onGarment = (garment) => attempt(this.wear(combine(garment, this.dressed.worn.map(({ entry }) => entry))));
+    this.#rail.onGarment = (garment) => attempt(this.wear(combine(garment, this.dressed.wanted)));
     // Whether it comes is told when it is worn.
     this.#rail.onNear = ({ id }) => void this.dressed.wardrobe.prefetch(id).catch(() => undefined);
     this.#fabric.onLook = (garment, look) => this.look(garment, look);
@@ -284,15 +263,19 @@ export class TryOn {
     this.#simulated.onSeek = ({ clip, seconds }) => this.#show(clip, seconds);
     this.#maps.onChange = this.#rivals.onChange = this.#simulated.onChange = () => (this.#changed = true);
     this.#simulated.onWanted = () => attempt(this.#simulated.seek(this.dressed));
-    this.cost.onBackend = (choice: BackendChoice) => attempt(this.dressed.compute(choice).then(() => this.#tell()));
+    this.cost.onBackend = (choice: BackendChoice) => attempt(this.dressed.compute(choice).then(() => this.tell()));
   }
 
   async #print(file: File): Promise<void> {
     const garment = this.#fabric.garment;
+    const { dressed } = this;
     if (!garment) return;
-    this.dressed.picture = await createImageBitmap(file).catch(() => {
+    const picture = await createImageBitmap(file).catch(() => {
       throw new Error(`${file.name} is no picture that this browser can read`);
     });
-    this.look(garment, { ...this.dressed.looks.get(garment)!, print: 'picture' });
+    // The figure may have given way to another meanwhile.
+    if (dressed !== this.dressed) return;
+    dressed.pictures.set(garment, picture);
+    this.look(garment, { ...dressed.looks.get(garment)!, print: 'picture' });
   }
 }

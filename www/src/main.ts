@@ -8,6 +8,7 @@ import { layOut } from './layout.js';
 import { Clips } from './motion/clips.js';
 import { offer } from './offer.js';
 import { readAddress, writeAddress, type Scene } from './share/address.js';
+import { bring } from './share/bring.js';
 import { acceptFiles } from './share/drop.js';
 import { save, takePicture } from './share/picture.js';
 import { Stage } from './stage/stage.js';
@@ -26,7 +27,7 @@ function showProgress(file: string, progress: Progress): void {
   }
   const bar = element<HTMLProgressElement>('progress');
   if (Number.isFinite(total)) Object.assign(bar, { max: total, value: loaded });
-  element('progress-text').textContent = `Loading the figure and its clothes: ${formatBytes(loaded)}`;
+  element('progress-bytes').textContent = `: ${formatBytes(loaded)}`;
 }
 
 /** Shows the figure of the address in what it says. */
@@ -65,18 +66,22 @@ function listen(page: TryOn): void {
     page.draw();
     const canvas = page.stage.renderer.domElement;
     const name = `ctsn-${page.dressed.entry.id}.png`;
-    takePicture(canvas, { width: canvas.width, height: canvas.height, type: 'image/png', backdrop: true }).then((blob) => save(blob, name), tell);
-    status(`Saved as ${name}`);
+    takePicture(canvas, { width: canvas.width, height: canvas.height, type: 'image/png', backdrop: true }).then((blob) => {
+      save(blob, name);
+      status(`Saved as ${name}`);
+    }, tell);
   });
   element('share').addEventListener('click', () => {
     const address = new URL(`?${writeAddress(page.scene)}`, location.href).href;
     history.replaceState(null, '', address);
-    navigator.clipboard.writeText(address).then(
+    // Pages that did not come by https have no clipboard.
+    const copied = navigator.clipboard?.writeText(address) ?? Promise.reject(new Error('no clipboard'));
+    copied.then(
       () => status('The link is on the clipboard'),
       () => status('The link is in the address bar'),
     );
   });
-  acceptFiles((files) => void page.bring(files).catch(tell));
+  acceptFiles((files) => void bring(page, files).catch(tell));
 }
 
 async function start(): Promise<void> {

@@ -21,7 +21,7 @@ export default function Page() {
   const container = useRef(null);
   useEffect(() => {
     const end = new AbortController();
-    show(container.current, end.signal);
+    show(container.current, end.signal).catch(console.error);
     return () => end.abort();
   }, []);
   return <main ref={container} />;
@@ -32,7 +32,6 @@ async function show(container, end) {
     new GLTFLoader().setMeshoptDecoder(MeshoptDecoder).loadAsync('character.glb'),
     loadModel('model.safetensors'),
   ]);
-  end.addEventListener('abort', () => model.dispose());
   if (end.aborted) return model.dispose();
   const renderer = new WebGLRenderer({ antialias: true });
   renderer.setSize(innerWidth, innerHeight);
@@ -56,5 +55,6 @@ async function show(container, end) {
     renderer.dispose();
     renderer.domElement.remove();
     cloth.dispose();
+    model.dispose();
   });
 }

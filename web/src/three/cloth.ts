@@ -68,7 +68,7 @@ export class Cloth<M extends Material | Material[] = Material, N extends AnyClot
     this.#zeroCopy = new ZeroCopy(model, this.geometry, options.renderer);
     // The matrix follows from the bones; this object's own position, rotation and scale are ignored.
     this.matrixAutoUpdate = false;
-    this.#begin();
+    this.#begin(this.#first(this.#dressing));
   }
 
   /** The network that moves this cloth. */
@@ -88,13 +88,16 @@ export class Cloth<M extends Material | Material[] = Material, N extends AnyClot
    */
   setModel(model: N, { fit }: Pick<ClothOptions, 'fit'> = {}): this {
     const dressing = this.#dressing.with(checked(model, this, this.material, {}), fit);
-    const geometry = createGeometry(model);
-    this.#leave();
-    this.geometry = geometry;
+    this.#fade.dispose();
+    // It may throw: before anything is changed.
+    const first = this.#first(dressing);
+    this.geometry.dispose();
+    this.#zeroCopy.dispose();
+    this.geometry = createGeometry(model);
     this.#dressing = dressing;
-    this.#zeroCopy = new ZeroCopy(model, geometry, this.#renderer);
+    this.#zeroCopy = new ZeroCopy(model, this.geometry, this.#renderer);
     this.#reach = undefined;
-    this.#begin();
+    this.#begin(first);
     return this;
   }
 
@@ -170,23 +173,19 @@ export class Cloth<M extends Material | Material[] = Material, N extends AnyClot
     return this;
   }
 
-  /**
-   * The first prediction is there at once, wherever later ones are computed, unless that is a worker. What is on its
-   * way is void.
-   */
-  #begin(): void {
+  /** The first prediction is there at once, unless a worker makes it; none for a character scaled to nothing. */
+  #first(dressing: Dressing): Frame | Promise<Frame> | undefined {
+    const { model, pose } = dressing;
     // Folds that are still on their way fade in.
-    if (this.model.finest === 'coarse') this.#fade.fix(1, 0);
-    this.#shown = ++this.#asked;
-    if (this.#dressing.read(this)) this.#receive(this.model.predictCloth(this.#dressing.pose, this.#atOnce));
-    this.#place();
+    if (model.finest === 'coarse') this.#fade.fix(1, 0);
+    return dressing.read(this) ? model.predictCloth(pose, this.#atOnce) : undefined;
   }
 
-  /** Lets go of what belongs to the model. */
-  #leave(): void {
-    this.geometry.dispose();
-    this.#fade.dispose();
-    this.#zeroCopy.dispose();
+  /** Shows it. What is on its way is void. */
+  #begin(first: Frame | Promise<Frame> | undefined): void {
+    this.#shown = ++this.#asked;
+    if (first) this.#receive(first);
+    this.#place();
   }
 
   #ask(quality: Quality, every: number): void {
@@ -292,7 +291,9 @@ export class Cloth<M extends Material | Material[] = Material, N extends AnyClot
 
   /** Frees the geometry, and the buffers on the GPU. */
   override dispose(): void {
-    this.#leave();
+    this.geometry.dispose();
+    this.#fade.dispose();
+    this.#zeroCopy.dispose();
     // Object3D has a dispose() of its own since three r187.
     super.dispose?.();
   }

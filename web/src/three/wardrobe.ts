@@ -10,6 +10,7 @@ import { drawNearer } from './layer.js';
 import { checkCharacter, is, refusal, type AnyClothModel, type ClothOptions } from './options.js';
 import { restOf } from './rest.js';
 import { Skin } from './skin.js';
+import { stack } from './stack.js';
 import { Tailor, type Tuck } from './tuck.js';
 
 /** What wardrobes hand to whatever loads their models. */
@@ -86,6 +87,11 @@ export class Wardrobe<Name extends string = string> extends Group {
   /** Names of what is worn, the innermost first. */
   get worn(): readonly Name[] {
     return [...this.#garments].filter(([, { wanted }]) => wanted).map(([name]) => name as Name);
+  }
+
+  /** Whether a change goes on: a page that draws on demand has to, until it has ended. */
+  get changing(): boolean {
+    return [...this.#garments.values()].some(({ wanted, share }) => !wanted || share < 1);
   }
 
   /** The cloth of a garment that is worn. While it comes, its material is a transparent copy of the page's. */
@@ -283,17 +289,6 @@ export class Wardrobe<Name extends string = string> extends Group {
 
 /** Lets the page draw and answer between long steps: to read a model, to predict, to put it on, what comes then. */
 const pause = () => new Promise<void>((resolve) => setTimeout(resolve));
-
-/** An order for what is wanted and what is still on: what goes stays over what it was over, and under what comes. */
-function stack(before: readonly string[], wanted: readonly string[]): string[] {
-  const order = [...wanted];
-  let at = 0;
-  for (const name of before) {
-    if (wanted.includes(name)) at = order.indexOf(name) + 1;
-    else order.splice(at++, 0, name);
-  }
-  return order;
-}
 
 const openModel = (source: ModelSource, options: WearOptions): Promise<AnyClothModel> => loadModel(source, options);
 

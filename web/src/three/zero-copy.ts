@@ -15,6 +15,8 @@ export class ZeroCopy {
   #buffers: ClothBuffers | undefined;
   #drawn = false;
   #coming: Promise<void> | undefined;
+  /** The device that has no room for them. */
+  #refused: GPUDevice | undefined;
   #disposed = false;
 
   constructor(model: AnyClothModel, geometry: BufferGeometry, renderer: object | undefined) {
@@ -44,10 +46,10 @@ export class ZeroCopy {
     return this.#buffers;
   }
 
-  /** Whether the renderer draws on the device on which the model predicts. */
+  /** Whether the renderer draws on the device on which the model predicts, which has not refused to. */
   shares(): boolean {
     const device = this.#model.device;
-    return device !== undefined && deviceOf(this.#renderer) === device;
+    return device !== undefined && device !== this.#refused && deviceOf(this.#renderer) === device;
   }
 
   /** Lets the renderer draw what was predicted into the buffers. */
@@ -64,9 +66,10 @@ export class ZeroCopy {
   }
 
   async #ask(): Promise<void> {
-    // Without buffers the cloth is drawn from arrays, and the model tells why.
+    // Without buffers the cloth is read back, and drawn from arrays.
     const model = this.#model as ClothModel;
-    const buffers = await model.createBuffers().catch(() => undefined);
+    const { device } = model;
+    const buffers = await model.createBuffers().catch(() => void (this.#refused = device));
     if (this.#disposed) buffers?.dispose();
     else this.#buffers = buffers;
   }

@@ -9,8 +9,15 @@ interface Waiting {
   onProgress?: ((progress: Progress) => void) | undefined;
 }
 
-/** The bundler must see this very expression to know the worker. */
-const newWorker = () => new Worker(new URL('./serve.js', import.meta.url), { type: 'module', name: 'ctsn' });
+function newWorker(): Worker {
+  try {
+    // The bundler must see this very expression to know the worker.
+    return new Worker(new URL('./serve.js', import.meta.url), { type: 'module', name: 'ctsn' });
+  } catch (error) {
+    // From another origin, or against the page's policy.
+    throw new CtsnError('worker', `the worker ${address()} does not start: ${(error as Error).message}`);
+  }
+}
 
 const address = () => String(new URL('./serve.js', import.meta.url));
 

@@ -28,7 +28,7 @@ async function load({ call, source, options }: Asked<'load'>): Promise<void> {
   loads.set(call, controller);
   try {
     const onProgress = (progress: { loaded: number; total?: number }) => send({ call, progress });
-    const model = await loadModel(source, { ...options, onProgress, signal: controller.signal });
+    const model = await loadModel(source, { ...options, backend: 'cpu', onProgress, signal: controller.signal });
     models.set(call, model);
     send({ call, loaded: describe(call, model) });
   } catch (error) {

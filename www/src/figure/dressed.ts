@@ -29,8 +29,10 @@ export class Dressed {
   onFailure: (error: unknown) => void = () => {};
   /** Where models compute. */
   backend: BackendChoice = 'cpu';
-  picture: Picture | undefined;
+  /** Pictures of one's own, by what they are on. */
+  readonly pictures = new Map<GarmentEntry, Picture>();
   #worn: readonly Worn[] = [];
+  #wanted: readonly GarmentEntry[] = [];
   readonly #materials = new Map<string, FabricMaterial>();
 
   /** `prepare`: settles when a garment of that look can be drawn. */
@@ -62,6 +64,11 @@ export class Dressed {
     return this.#worn;
   }
 
+  /** What is worn, or is to be once it has come. */
+  get wanted(): readonly GarmentEntry[] {
+    return this.#wanted;
+  }
+
   /** The models of what is worn. */
   get models(): readonly ClothModel[] {
     return this.#worn.map(({ cloth }) => cloth.model);
@@ -74,7 +81,13 @@ export class Dressed {
 
   /** Puts these garments on, and takes all others off; false if overtaken by another call. */
   async wear(entries: readonly GarmentEntry[], onProgress?: (progress: Progress) => void): Promise<boolean> {
-    if (!(await this.wardrobe.wear(entries.map(({ id }) => id), { onProgress }))) return false;
+    this.#wanted = entries;
+    try {
+      if (!(await this.wardrobe.wear(entries.map(({ id }) => id), { onProgress }))) return false;
+    } catch (error) {
+      if (this.#wanted === entries) this.#wanted = this.#worn.map(({ entry }) => entry);
+      throw error;
+    }
     const before = this.#worn;
     const kept = (entry: GarmentEntry, cloth: Worn['cloth']) => before.find((worn) => worn.entry === entry && worn.cloth === cloth);
     this.#worn = entries.map((entry) => {
@@ -95,7 +108,7 @@ export class Dressed {
   /** Is of another fabric, colour or print from now on. */
   dress(entry: GarmentEntry, look: Look): void {
     this.looks.set(entry, look);
-    this.#materials.get(entry.id)?.show(look, this.picture);
+    this.#materials.get(entry.id)?.show(look, this.pictures.get(entry));
     const worn = this.#worn.find((one) => one.entry === entry);
     if (worn) worn.hem.thick = fabrics[look.fabric].thick;
   }
@@ -124,6 +137,7 @@ export class Dressed {
   remove(entry: GarmentEntry): void {
     this.entry.garments.splice(this.entry.garments.indexOf(entry), 1);
     this.looks.delete(entry);
+    this.pictures.delete(entry);
   }
 
   /** The bone in the middle of the figure: the hip of what it wears. */
@@ -149,7 +163,7 @@ export class Dressed {
     let material = this.#materials.get(id);
     if (!material) {
       const entry = this.entry.garments.find((garment) => garment.id === id)!;
-      this.#materials.set(id, (material = new FabricMaterial(this.looks.get(entry)!, this.picture)));
+      this.#materials.set(id, (material = new FabricMaterial(this.looks.get(entry)!, this.pictures.get(entry))));
     }
     return material;
   }

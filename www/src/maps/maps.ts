@@ -80,6 +80,7 @@ export class Maps {
     } else if (map === 'error') {
       const known = moment?.worn.cloth === cloth;
       const mean = known ? measureError(cloth, moment, values) : 0;
+      if (!known) values.fill(NaN);
       if (known || !moment) {
         element('legend-name').textContent = known ? `From the simulation: ${(1e3 * mean).toFixed(1)} mm in the mean` : 'No simulation of this motion';
       }

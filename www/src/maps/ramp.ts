@@ -7,8 +7,12 @@ const STOPS = [
   [0.99, 0.9, 0.36],
 ] as const;
 
-/** Writes the colour of a value from 0 to 1. */
+/** Of what is not known: grey, of every channel. */
+const UNKNOWN = 0.4;
+
+/** Writes the colour of a value from 0 to 1, or NaN. */
 export function colourOf(value: number, to: Float32Array, at: number): void {
+  if (Number.isNaN(value)) return void to.fill(UNKNOWN, at, at + 3);
   const place = Math.min(Math.max(value, 0), 1) * (STOPS.length - 1);
   const below = Math.min(Math.floor(place), STOPS.length - 2);
   const share = place - below;
