@@ -68,7 +68,9 @@ fn data_that_cannot_be_judged_is_refused() {
     let folder = Folder::new();
     let (setup, samples) = write(&folder);
     let refuses = |data: &str, says: &[&str]| folder.refuses(&format!("evaluate model.safetensors {data}"), says);
-    write_dataset(&folder, "early", &setup, &samples[..5]);
+    let mut long = setup.clone();
+    long.description.frames = vec![10; long.description.clips.len()];
+    write_dataset(&folder, "early", &long, &samples[..5]);
     refuses("early", &["unseen poses", "last tenth", "5 poses of 2 clips"]);
     write_dataset(&folder, "empty", &setup, &[]);
     refuses("empty", &["unseen poses", "0 poses"]);
@@ -110,6 +112,8 @@ fn a_study_prints_its_tables_goes_on_and_refuses_another_s_outcomes() {
     std::fs::remove_file(folder.path("study/pbns.json")).expect("an outcome");
     assert_eq!(folder.accepts(command), told);
     folder.refuses("study data -o study --tables comparison --epochs 2", &["another study", "epochs: Some(2)"]);
-    write_dataset(&folder, "early", &setup, &samples[..5]);
+    let mut long = setup.clone();
+    long.description.frames = vec![10; long.description.clips.len()];
+    write_dataset(&folder, "early", &long, &samples[..5]);
     folder.refuses("study early -o other", &["at least 50 poses, found 5"]);
 }
