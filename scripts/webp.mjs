@@ -1,4 +1,4 @@
-// Moving pictures: stills of webp in the container of RFC 9649.
+// Stills of webp in the container of RFC 9649: without a colour profile, and many as a moving picture.
 
 /** Number as so many bytes, least first. */
 const bytes = (number, count) => Buffer.from(Array.from({ length: count }, (_, i) => Math.floor(number / 256 ** i) % 256));
@@ -17,6 +17,12 @@ function imageOf(still) {
     at = end + (end % 2);
   }
   return Buffer.concat(found);
+}
+
+/** A still with transparency, without its colour profile: without one sRGB is meant, which it is. */
+export function plain(still, [width, height]) {
+  const header = chunk('VP8X', bytes(0x10, 4), bytes(width - 1, 3), bytes(height - 1, 3));
+  return chunk('RIFF', Buffer.from('WEBP'), header, imageOf(still));
 }
 
 /** One moving webp of stills of one size, shown for so many milliseconds each, again and again. */

@@ -26,7 +26,7 @@ export async function takePicture(canvas: HTMLCanvasElement, { width, height, ty
   context.drawImage(canvas, (canvas.width - wide) / 2, (canvas.height - high) / 2, wide, high, 0, 0, width, height);
   return new Promise((resolve, reject) => {
     const done = (blob: Blob | null) => (blob ? resolve(blob) : reject(new Error('the browser made no picture')));
-    copy.toBlob(done, type, 0.8);
+    copy.toBlob(done, type, 0.7);
   });
 }
 

@@ -109,6 +109,7 @@ fn a_bake_in_too_little_time_still_makes_a_model() {
     assert!((60..90).contains(&kept) && told.contains("unseen frames"), "{kept} kept: {told}");
     let finished = |told: &str| told.matches("has been simulated already").count();
     assert_eq!(finished(&folder.accepts(&bake)), 2, "both datasets are kept");
+    folder.write("out.checkpoint", b"of a training that was cut off");
     let told = folder.accepts(&bake.replace("1s", "30s"));
     assert_eq!(finished(&told), 1, "a longer bake goes on: {told}");
     let more = ctsn_train::report::Report::new(&folder.path("out.work")).expect("a report").kept;

@@ -153,6 +153,10 @@ impl Steps<'_> {
             println!("{}: has been simulated already", dataset.display());
             return self.along(options, dataset, from, Some(self.begun)).map(drop);
         }
+        if had.is_some() {
+            // A training on fewer poses that was cut off cannot go on.
+            std::fs::remove_file(self.arguments.output.with_extension("checkpoint")).ok();
+        }
         let more = budget - had.unwrap_or_default();
         let until = Instant::now() + more.mul_f64(SHARES[step]);
         let until = until.min(self.begun + more.mul_f64(SHARES[..=step].iter().sum()));
