@@ -10,6 +10,7 @@ class Arrival {
   readonly #listeners = new Set<Pick<PartsOptions, 'onProgress' | 'onPart'>>();
   /** What has come, for those who ask late. */
   #parts: Uint8Array[] = [];
+  #progress: Progress | undefined;
   readonly #request = new AbortController();
   /** How many wait for it. */
   #waiting = 0;
@@ -20,7 +21,10 @@ class Arrival {
 
   private constructor(address: string, cache: string | undefined) {
     this.#address = address;
-    const onProgress = (progress: Progress) => this.#listeners.forEach((listener) => listener.onProgress?.(progress));
+    const onProgress = (progress: Progress) => {
+      this.#progress = progress;
+      this.#listeners.forEach((listener) => listener.onProgress?.(progress));
+    };
     const onPart = (part: Uint8Array) => {
       this.#parts.push(part);
       this.#listeners.forEach((listener) => listener.onPart?.(part));
@@ -46,6 +50,7 @@ class Arrival {
     const listener = { onProgress, onPart };
     this.#listeners.add(listener);
     if (onPart) this.#parts.forEach(onPart);
+    if (this.#progress) onProgress?.(this.#progress);
     try {
       const bytes = await until(signal, this.#bytes);
       await check?.(bytes);

@@ -189,8 +189,11 @@ test('what is preloaded is asked for once, and taken by the next', async () => {
   asked.clear();
   await preload(`${address}/small`);
   expect(asked.get('/small')).toBe(1);
-  const two = await Promise.all([loadModel(`${address}/small`), loadModel(`${address}/small`)]);
+  const told: number[] = [];
+  const onProgress = ({ loaded }: { loaded: number }) => told.push(loaded);
+  const two = await Promise.all([loadModel(`${address}/small`, { onProgress }), loadModel(`${address}/small`)]);
   expect(asked.get('/small')).toBe(1);
+  expect(told).toEqual([whole.length]);
   two.forEach((model) => model.dispose());
   expect(await failure(() => preload(`${address}/none`))).toMatchObject({ code: 'fetch', status: 404 });
   expect(await failure(() => loadModel(`${address}/none`)), 'a failure is not kept').toMatchObject({ status: 404 });
