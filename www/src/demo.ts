@@ -25,9 +25,6 @@ const BLEND = 12;
 /** Bones that may touch the floor. */
 const LOW = /foot|toe|paw|hand/i;
 
-/** Hears of the bytes of a file. */
-type OnProgress = (file: string, progress: Progress) => void;
-
 /** The running page: moves the figure, predicts what it wears and draws both, once per animation frame. */
 export class TryOn {
   readonly stage: Stage;
@@ -65,17 +62,8 @@ export class TryOn {
   }
 
   /** Shows a figure in these garments; what was shown stays until it is there. Overtaken calls end unseen. */
-  async choose(entry: Figure, wear = entry.garments.slice(0, 1), onProgress?: OnProgress): Promise<Dressed> {
+  async choose(entry: Figure, wear = entry.garments.slice(0, 1), onProgress?: (file: string, progress: Progress) => void): Promise<Dressed> {
     const turn = ++this.#turn;
-    try {
-      return await this.#come(turn, entry, wear, onProgress);
-    } catch (error) {
-      if (turn !== this.#turn) return this.dressed;
-      throw error;
-    }
-  }
-
-  async #come(turn: number, entry: Figure, wear: readonly GarmentEntry[], onProgress: OnProgress | undefined): Promise<Dressed> {
     // What draws it all is compiled while the files come; behind them, where that takes long and nothing is seen.
     const [first] = wear;
     const isSlow = first && this.predictions === 0 ? this.stage.isSlow(this.#samples.piece(first)) : Promise.resolve(false);
@@ -242,7 +230,12 @@ export class TryOn {
 
   #listen(): void {
     const attempt = (work: Promise<unknown>) => void work.catch(tell);
-    this.#rail.onFigure = (figure) => attempt(this.choose(figure));
+    this.#rail.onFigure = (figure) => {
+      const chosen = this.choose(figure);
+      const turn = this.#turn;
+      // Nobody waits any more for one that was overtaken.
+      chosen.catch((error: unknown) => turn === this.#turn && tell(error));
+    };
     this.#rail.onGarment = (garment) => attempt(this.wear(combine(garment, this.dressed.wanted)));
     // Whether it comes is told when it is worn.
     this.#rail.onNear = ({ id }) => void this.dressed.wardrobe.prefetch(id).catch(() => undefined);

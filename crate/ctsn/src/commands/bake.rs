@@ -78,7 +78,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let frames: usize = character.clips.iter().map(|clip| clip.poses.len()).sum();
     let frames = options.poses.unwrap_or(frames).min(frames);
     ensure!(frames >= POSES, "wanted at least {POSES} poses to learn from, found {frames} in the clips and --poses");
-    let steps = Steps { character: &character, arguments, garment: &garment, budget, begun: Instant::now() };
+    let steps = Steps { character: &character, arguments, garment: &garment, frames, budget, begun: Instant::now() };
     let (shown, fine) = steps.check()?;
     let plan = plan(frames, options, &character, fine);
     let few = frames.div_ceil(FIRST).max(FEWEST).min(frames);
@@ -88,7 +88,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         steps.estimate(&few, &along, &plan)?;
     }
     println!("step 1 of 5: poses along their paths");
-    steps.simulate(0, &few, frames, &along, None)?;
+    steps.simulate(0, &few, &along, None)?;
     if !first.exists() {
         println!("step 2 of 5: a first model");
         steps.train(1, &along, &first)?;
@@ -102,7 +102,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     adopt(&along, &work)?;
     let [mixed, coarse] = [plan.mixed, plan.coarse].map(Some);
     let many = simulate::Options { poses: Some(frames), mixed, coarse, ..options.clone() };
-    steps.simulate(2, &many, frames, &work, Some(&first))?;
+    steps.simulate(2, &many, &work, Some(&first))?;
     println!("step 4 of 5: the model");
     steps.train(3, &work, output)?;
     println!("step 5 of 5: its errors");

@@ -42,7 +42,9 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<()> {
     let model = model(&arguments.model)?;
     let dataset = arguments.truth.as_deref().map(Setup::existing).transpose()?;
-    dataset.as_ref().map_or(Ok(()), |setup| check_same(&model, setup))?;
+    if let Some(setup) = &dataset {
+        check_same(&model, setup)?;
+    }
     let rate = dataset.as_ref().map_or(arguments.rate, |setup| setup.description.rate);
     let character = gltf::read_character(&arguments.character, rate)?;
     let clip = character.clip(&arguments.clip)?;

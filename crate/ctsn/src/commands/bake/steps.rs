@@ -52,6 +52,8 @@ pub struct Steps<'a> {
     pub character: &'a Character,
     pub arguments: &'a Arguments,
     pub garment: &'a Path,
+    /// Frames that may be simulated.
+    pub frames: usize,
     /// None where a number of epochs was asked for.
     pub budget: Option<Duration>,
     pub begun: Instant,
@@ -129,7 +131,7 @@ impl Steps<'_> {
     }
 
     /// Simulates into a dataset for the share of the time that is this step's, less what the steps before took too
-    /// long; longer where a training wants more poses, up to `most` of them. What was interrupted has that time again.
+    /// long; longer where a training wants more poses, up to all frames. What was interrupted has that time again.
     /// A dataset that was finished in time is kept: with more poses it would be another, and all that follows had to be
     /// done again. Where a longer time is asked for, poses are added for what it is longer, but not to those of the
     /// first model.
@@ -140,7 +142,6 @@ impl Steps<'_> {
         &self,
         step: usize,
         options: &simulate::Options,
-        most: usize,
         dataset: &Path,
         from: Option<&Path>,
     ) -> Result<()> {
@@ -160,15 +161,15 @@ impl Steps<'_> {
         let more = budget - had.unwrap_or_default();
         let until = Instant::now() + more.mul_f64(SHARES[step]);
         let until = until.min(self.begun + more.mul_f64(SHARES[..=step].iter().sum()));
-        let mut poses = FEWEST.min(most);
+        let mut poses = FEWEST.min(self.frames);
         loop {
             let enough = simulate::Options { poses: Some(poses), mixed: None, coarse: None, ..options.clone() };
             let kept = self.along(&enough, dataset, from, None)?.kept;
-            if kept >= FEWEST || poses == most {
+            if kept >= FEWEST || poses == self.frames {
                 break;
             }
             // As many are left out of the next ones.
-            poses = (poses + (FEWEST - kept) * poses / kept.max(1)).min(most);
+            poses = (poses + (FEWEST - kept) * poses / kept.max(1)).min(self.frames);
         }
         simulate::some(&self.along(options, dataset, from, Some(until))?)?;
         Ok(write(&done, budget.as_secs_f64().to_string().as_bytes())?)
