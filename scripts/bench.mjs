@@ -4,7 +4,7 @@
 // npm run bench -- --block: how long a page is held up by loads and predictions, with and without a worker.
 // npm run bench -- --visit: what a visitor of the demo page waits for on a slow line; 200 changes of clothes.
 // npm run bench -- --cast: every model of the demo page, or those named behind it, as in -- --cast andy-dress.
-// npm run bench -- --peers: beside other runtimes, into docs/results.md.
+// npm run bench -- --peers: beside other runtimes, into docs/results/peers.md.
 import { copyFileSync, mkdirSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
 import { measureBlocks } from './block.mjs';

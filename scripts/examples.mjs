@@ -14,6 +14,8 @@ import { withServer } from './page.mjs';
 import { at, main, run, say, Stop } from './step.mjs';
 
 const scratch = at('out', 'examples');
+/** Signals that end a script from outside. */
+const ENDS = ['SIGINT', 'SIGTERM', 'SIGHUP'];
 
 /** Runs npm in a folder; what it says is shown only where it fails. */
 async function npm(cwd, ...args) {
@@ -62,14 +64,21 @@ async function serving(folder, script, body) {
   // A group of its own, because npm starts the server in a shell.
   const server = spawn('npm', ['run', script, '--', '--port', `${port}`], { cwd: folder, env, detached: true, stdio: 'ignore' });
   const address = `http://localhost:${port}/`;
+  // Ctrl-C does not reach that group.
+  const end = () => server.exitCode ?? server.signalCode ?? process.kill(-server.pid);
+  const leave = () => process.exit(1);
+  process.once('exit', end);
+  ENDS.forEach((signal) => process.once(signal, leave));
   try {
-    for (const end = Date.now() + 60_000; !(await fetch(address).catch(() => undefined)); ) {
-      if (server.exitCode !== null || Date.now() > end) throw new Stop(`npm run ${script} serves nothing in ${folder}`);
+    for (const last = Date.now() + 60_000; !(await fetch(address).catch(() => undefined)); ) {
+      if (server.exitCode !== null || Date.now() > last) throw new Stop(`npm run ${script} serves nothing in ${folder}`);
       await new Promise((resolve) => setTimeout(resolve, 200));
     }
     return await body(address);
   } finally {
-    if (server.exitCode === null) process.kill(-server.pid);
+    process.off('exit', end);
+    ENDS.forEach((signal) => process.off(signal, leave));
+    end();
   }
 }
 
@@ -90,7 +99,7 @@ async function checkTypes(folder) {
     const { status, output } = await run('node', [tsc, '-p', project, '--pretty', 'false'], { capture: true, cwd: folder });
     const errors = output.split('\n').filter((line) => /error TS/.test(line));
     if (status !== 0 && errors.length === 0) problems.push(output);
-    problems.push(...errors.filter((line) => /^(main|node_modules\/ctsn|error)/.test(line)).map((line) => `${project}: ${line}`));
+    problems.push(...errors.filter((line) => /^(main|three|node_modules\/ctsn|error)/.test(line)).map((line) => `${project}: ${line}`));
   }
   return { problems, warnings: [] };
 }

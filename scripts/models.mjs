@@ -14,16 +14,19 @@ const page = (name) => at('www', 'public', 'cast', name);
 
 async function train(name, minutes) {
   const [figure, kind] = name.split('-');
+  const { vertices, shown, steps } = PAIRS[name];
   const [character, garment, model] = [out(`${figure}.glb`), out(`${name}.glb`), out(`${name}.safetensors`)];
   if (!existsSync(character)) await ctsn('character', figure, '-o', character);
   if (!existsSync(garment)) {
-    await ctsn('garment', character, '--kind', kind, '--vertices', PAIRS[name].vertices, '-o', garment);
+    await ctsn('garment', character, '--kind', kind, '--vertices', vertices, '-o', garment);
   }
   await ctsn('bake', character, garment, '--own-motion', '--time-budget', `${minutes}m`, '-o', model);
-  await ctsn('pack', model, character, '--report', '-o', page(`${name}.safetensors`));
-  await ctsn('pack', character, '-o', page(`${figure}.glb`));
   const truth = out(`${name}.truth`);
-  await ctsn('simulate', character, garment, '--rate', 6, '--clip', PAIRS[name].shown, '--from', model, '-o', truth);
+  await ctsn('simulate', character, garment, '--rate', 6, '--clip', shown, '--from', model, '-o', truth);
+  const polished = steps ? out(`${name}.polished.safetensors`) : model;
+  if (steps) await ctsn('polish', model, truth, '--steps', steps, '-o', polished);
+  await ctsn('pack', polished, character, '--report', '-o', page(`${name}.safetensors`));
+  await ctsn('pack', character, '-o', page(`${figure}.glb`));
   await ctsn('pack', truth, '-o', page(`${name}.truth`));
 }
 

@@ -157,7 +157,7 @@ async function rounds(context) {
   return { results: all.slice(0, ROUNDS).map(({ results }) => results), disturbed: all[ROUNDS - 1].reference / all[0].reference };
 }
 
-/** Measures all sizes, prints their tables and writes them into docs/results.md. */
+/** Measures all sizes, prints their tables and writes them into docs/results/peers.md. */
 export async function comparePeers(ctsn) {
   mkdirSync(folder, { recursive: true });
   const python = await ensurePython();

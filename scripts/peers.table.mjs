@@ -1,8 +1,6 @@
-// The tables of npm run bench -- --peers, on the screen and in docs/results.md.
+// The tables of npm run bench -- --peers, on the screen and in docs/results/peers.md.
 import { readFileSync, writeFileSync } from 'node:fs';
 import { at, need, say } from './step.mjs';
-
-const HEADING = '## Beside other runtimes';
 
 const median = (values) => [...values].sort((a, b) => a - b)[values.length >> 1];
 const largest = (a, b) => a.reduce((most, value, i) => Math.max(most, Math.abs(value - b[i])), 0);
@@ -34,7 +32,7 @@ export function table(name, engines, { results, disturbed }) {
   return [line([name, ...columns.slice(1)]), line(columns.map(() => '---')), ...rows.map((row) => line(Object.values(row)))].join('\n');
 }
 
-/** Writes the tables into docs/results.md, in place of older ones. */
+/** Writes the tables into docs/results/peers.md, in place of older ones. */
 export async function write(tables, { rounds, predictions, version }) {
   const web = JSON.parse(readFileSync(at('node_modules', 'onnxruntime-web', 'package.json'), 'utf8')).version;
   const commit = (await need('git', ['rev-parse', '--short', 'HEAD'], { capture: true })).trim();
@@ -43,11 +41,6 @@ Made-up cloth, 65 joints, without a body and without lengths to keep: no engine 
 Medians of ${rounds} rounds of ${predictions} predictions (least and greatest round); in every round each engine is started anew, in turn.
 **Times ours**: median over the rounds of the quotient to ctsn in the same place, with as many threads. **To the first**: from nothing loaded to the first prediction; in Chromium with download from this machine.
 **Memory**: of the whole process, Python included; in Chromium of WebAssembly alone. **Difference**: largest of any coordinate to the first row.`;
-  const section = `${HEADING}\n\n${about}\n\n${tables.join('\n\n')}\n\n`;
-  const file = at('docs', 'results.md');
-  const text = readFileSync(file, 'utf8');
-  const start = text.includes(HEADING) ? text.indexOf(HEADING) : text.indexOf('## Size');
-  const end = text.includes(HEADING) ? text.indexOf('\n## ', start) + 1 : start;
-  writeFileSync(file, text.slice(0, start) + section + text.slice(end));
-  say('written to docs/results.md');
+  writeFileSync(at('docs', 'results', 'peers.md'), `# Beside other runtimes\n\n${about}\n\n${tables.join('\n\n')}\n`);
+  say('written to docs/results/peers.md');
 }

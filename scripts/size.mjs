@@ -3,7 +3,7 @@ import { readFileSync } from 'node:fs';
 import path from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { brotliCompressSync } from 'node:zlib';
-import { at, main } from './step.mjs';
+import { at, main, Stop } from './step.mjs';
 
 /**
  * Minified JavaScript of an entry of the npm package, three.js left out: what is loaded with it, what only a GPU asks
@@ -64,5 +64,7 @@ if (import.meta.url === pathToFileURL(process.argv[1] ?? '').href) {
     const measured = await measure();
     console.table(Object.fromEntries(Object.entries(measured).map(([part, { raw, brotli }]) => [part,
       { raw, 'raw budget': budget[part].raw, brotli, 'brotli budget': budget[part].brotli }])));
+    const above = Object.entries(measured).filter(([part, { raw, brotli }]) => raw > budget[part].raw || brotli > budget[part].brotli);
+    if (above.length > 0) throw new Stop(`above the budget: ${above.map(([part]) => part).join('; ')}`);
   });
 }

@@ -2,7 +2,7 @@
 //   npm test -- Node    those whose names begin so
 import { existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
-import { chromedriver, chromium, firefox, vulkan, webkitDriver, xvfb } from './browser.mjs';
+import { armCompiler, armEmulator, chromedriver, chromium, firefox, vulkan, webkitDriver, xvfb } from './browser.mjs';
 import { tested } from './environments.mjs';
 import { tryExamples } from './examples.mjs';
 import { fuzz, TARGETS } from './fuzz.mjs';
@@ -42,8 +42,8 @@ async function cargoOnArm() {
   await ensureRust(target);
   const skipped = ['prediction_allocates', 'on_the_way_out'].flatMap((name) => ['--skip', name]);
   return cargo(['--package', 'ctsn-core', '--package', 'ctsn-tests', '--no-default-features', '--target', target, '--', ...skipped], {
-    CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_LINKER: 'aarch64-linux-gnu-gcc',
-    CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_RUNNER: 'qemu-aarch64-static -L /usr/aarch64-linux-gnu',
+    CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_LINKER: armCompiler(),
+    CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_RUNNER: `${armEmulator()} -L /usr/aarch64-linux-gnu`,
   });
 }
 
@@ -175,7 +175,7 @@ async function runAll() {
 }
 
 await main(async () => {
-  for (const find of [chromium, chromedriver, firefox, webkitDriver, xvfb]) find();
+  for (const find of [chromium, chromedriver, firefox, webkitDriver, xvfb, armCompiler, armEmulator]) find();
   await ensureRust();
   mkdirSync(at('out'), { recursive: true });
   const beginning = process.argv[2] ?? '';

@@ -7,7 +7,7 @@ struct Params {
     // Numbers from one row of output to the next: features, padded to whole vec4.
     stride: u32,
     heads: u32,
-    // Invocations per head: a power of two, at most SIZE.
+    // Of no use here.
     lanes: u32,
     // 1 / √d
     scale: f32,

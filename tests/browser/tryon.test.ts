@@ -1,10 +1,10 @@
 // What a visitor does on the try-on page: dress, drag, drop, share, by mouse, by keyboard and on a phone.
-import { cpSync, mkdtempSync, readFileSync } from 'node:fs';
+import { cpSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import path from 'node:path';
 import { fileURLToPath } from 'node:url';
 import type { Page } from 'playwright-core';
-import { afterAll, afterEach, beforeAll, expect, test } from 'vitest';
+import { afterAll, afterEach, beforeAll, expect, onTestFinished, test } from 'vitest';
 import { withServer } from '../../scripts/page.mjs';
 import { ask, out, plain, Site } from './page.js';
 import { difference } from './safetensors.js';
@@ -279,6 +279,7 @@ test('on a phone the figure stays in sight, and the panel folds', async () => {
 test('the built site works in any folder of a server; a picture is saved', async () => {
   const folder = mkdtempSync(path.join(tmpdir(), 'ctsn-'));
   cpSync(file('dist'), folder, { recursive: true });
+  onTestFinished(() => rmSync(folder, { recursive: true }));
   await withServer({ '/some/folder/': folder }, async (origin) => {
     // The browser without a screen saves nothing: what it would save is looked at.
     const watch = 'HTMLAnchorElement.prototype.click = function () { window.saved = { name: this.download, address: this.href }; }';

@@ -82,7 +82,7 @@ fn parity_with_the_cpu_at_awkward_sizes() {
             let pose = random::column_major(&random::pose(&mut rng, joints));
             let shares = Shares { skeleton: 1.0, mesh: rng.f32() };
             on_cpu.predict_faded(&pose, streams, shares).expect("a pose");
-            on_gpu.predict_faded(&pose, streams, shares).expect("a pose");
+            on_gpu.predict_faded(&pose, streams, shares.mesh).expect("a pose");
             let found = block_on(on_gpu.read()).expect("a prediction");
             assert_eq!(on_gpu.confidence(), on_cpu.confidence());
             assert_eq!(found.positions.len(), 3 * vertices);
@@ -185,7 +185,7 @@ fn bad_poses_are_refused_and_overflow_is_found() {
 
 #[test]
 fn what_the_device_does_not_allow_is_refused() {
-    let gpu = gpu();
+    let gpu = gpu().treated_as_software(false);
     let shape = Shape { vertices: 3, joints: 1, embedding: 1, basis: 1, heads: 1, per_head: 2049, layers: 1 };
     let model = random::model(&mut fastrand::Rng::with_seed(1), shape);
     let error = block_on(ctsn_gpu::Model::new(&gpu, &model)).err().expect("wanted a refusal");
@@ -198,7 +198,6 @@ fn a_lost_device_is_reported() {
     let golden = &golden::ALL[0];
     let pose = &golden.read().poses[0];
     let mut predictor = predictor(&gpu, &golden.host_model());
-    let until = gpu.until_lost();
     let read = predictor.read();
     gpu.device().destroy();
     block_on(read).map(drop).unwrap_or_else(|error| assert_eq!(error.kind(), "lost"));
@@ -206,7 +205,6 @@ fn a_lost_device_is_reported() {
     drop(gpu.device().poll(ctsn_gpu::wgpu::PollType::Poll));
     let error = predictor.predict_row_major(pose, Streams::Both).expect_err("wanted a refusal");
     assert_eq!(error.kind(), "lost", "{error}");
-    assert_eq!(block_on(until), gpu.lost());
     assert!(gpu.lost().is_some());
     let error = block_on(ctsn_gpu::Model::new(&gpu, &golden.host_model())).err().expect("wanted a refusal");
     assert_eq!(error.kind(), "lost", "{error}");

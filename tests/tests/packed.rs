@@ -8,6 +8,11 @@ use ctsn_core::{Predictor, Result, Streams};
 use ctsn_tests::finite::{largest, pose, predict};
 use ctsn_tests::golden::ALL;
 use ctsn_tests::packed::{packed, packed_bytes};
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen_test::{wasm_bindgen_test as test, wasm_bindgen_test_configure};
+
+#[cfg(target_arch = "wasm32")]
+wasm_bindgen_test_configure!(run_in_browser);
 
 /// The rounding of 14 bits on each side of zero, through two streams of the golden networks.
 const NEAR: f32 = 2e-4;

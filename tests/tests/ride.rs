@@ -28,6 +28,10 @@ fn two_layers_with_pockets_are_the_same_on_both_devices() {
     let riders = model.ride.as_ref().expect("riders").corners.len() / 3;
     assert!((model.sizes.vertices, riders) == (4000, 21_338) && surface.vertex.len() > riders);
     let mut on_cpu = Predictor::from_model(model.clone(), Level::new());
+    // Vertices that meet in one place, side by side as they are drawn.
+    let split = |values: &[f32]| -> Vec<f32> {
+        surface.vertex.iter().flat_map(|vertex| &values[3 * *vertex as usize..][..3]).copied().collect()
+    };
     for software in [true, false] {
         let gpu = block_on(Gpu::new()).expect("a Vulkan adapter (Debian: mesa-vulkan-drivers)");
         let mut on_gpu = on_gpu(&gpu.treated_as_software(software), &model);
@@ -42,11 +46,11 @@ fn two_layers_with_pockets_are_the_same_on_both_devices() {
             assert_eq!(drawn.positions.len(), 3 * surface.vertex.len());
             // Where cloth is crumpled, the normals around a vertex nearly cancel out, and what is left of them turns.
             let parts = [
-                (&drawn.positions, on_cpu.drawn_positions(), TOLERANCE),
-                (&drawn.normals, on_cpu.drawn_normals(), 100.0 * TOLERANCE),
+                (&drawn.positions, split(on_cpu.shown_positions()), TOLERANCE),
+                (&drawn.normals, split(on_cpu.shown_normals()), 100.0 * TOLERANCE),
             ];
             for (found, wanted, tolerance) in parts {
-                let off = largest(found, wanted);
+                let off = largest(found, &wanted);
                 assert!(off <= tolerance, "{streams:?}: {off:e}");
             }
         }
@@ -85,12 +89,7 @@ fn cloth_that_rides_on_itself_is_where_it_was() {
         predictor.predict_row_major(&pose, Streams::Both).expect("a pose");
     }
     let [plain, itself] = predictors;
-    let pairs = [
-        (plain.positions(), itself.shown_positions()),
-        (plain.normals(), itself.shown_normals()),
-        (plain.positions(), itself.drawn_positions()),
-        (plain.normals(), itself.drawn_normals()),
-    ];
+    let pairs = [(plain.positions(), itself.shown_positions()), (plain.normals(), itself.shown_normals())];
     pairs.iter().for_each(|(plain, itself)| assert_eq!(plain, itself));
     assert_eq!(plain.triangles(), itself.shown_triangles());
 }

@@ -101,6 +101,12 @@ export function follow(signals: (AbortSignal | null | undefined)[]): { end: Abor
   return { end, done: () => leave.forEach((one) => one()) };
 }
 
+/** Aborted as either of two signals is. Browsers before 2024 have no `AbortSignal.any`; there both keep a listener. */
+export function either(one: AbortSignal, other: AbortSignal): AbortSignal {
+  const signals = [one, other];
+  return (AbortSignal as Partial<typeof AbortSignal>).any?.(signals) ?? follow(signals).end.signal;
+}
+
 /** What comes of `work`, or the reason of `signal` where that is aborted first. */
 export async function until<T>(signal: AbortSignal | undefined, work: Promise<T>): Promise<T> {
   if (!signal) return work;

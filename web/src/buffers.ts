@@ -46,9 +46,9 @@ export class ClothBuffers {
   }
 
   /** @internal Submits a prediction of `pose` [16·J]. */
-  predict(pose: Float32Array, { streams, skeleton, mesh }: Fade): void {
+  predict(pose: Float32Array, { streams, mesh }: Fade): void {
     try {
-      this.#predictor!.predict(pose, streams, skeleton, mesh);
+      this.#predictor!.predict(pose, streams, mesh);
     } catch (cause) {
       throw fromCore(cause);
     }

@@ -58,7 +58,7 @@ const keeping = new Map<string, Promise<void>>();
 /** The answer to a request: what the cache has, or what comes, which it takes once it has come. */
 async function ask(address: string | URL, request: RequestInit | undefined, cache: string | undefined): Promise<Response> {
   const store = await openStore(cache);
-  const kept = await store?.match(address);
+  const kept = await store?.match(address).catch(() => undefined);
   if (kept) return kept;
   const response = await fetch(address, request);
   if (store && response.ok) {
@@ -68,9 +68,13 @@ async function ask(address: string | URL, request: RequestInit | undefined, cach
   return response;
 }
 
-/** A page may be forbidden to keep anything; then it asks each time. */
+/** A page may be forbidden to keep anything, or even to look at `caches`; then it asks each time. */
 async function openStore(cache: string | undefined): Promise<Cache | undefined> {
-  return cache === undefined ? undefined : globalThis.caches?.open(cache).catch(() => undefined);
+  try {
+    return cache === undefined ? undefined : await globalThis.caches?.open(cache);
+  } catch {
+    return undefined;
+  }
 }
 
 /** Lets go of what was kept and is of no use. */

@@ -15,7 +15,14 @@ export const gpu = {
   submitted: [] as Streams[],
   /** What happens while a prediction is submitted; the code of its failure, if it is to fail. */
   submitting: (): string | undefined => undefined,
+  /** As at the start of a test. */
+  reset(): void {
+    Object.assign(this, { started: 0, refusals: 0, held: false, answers: [], submitted: [], submitting: () => undefined });
+  },
 };
+
+/** Waits until everything that is ready to happen has happened. */
+export const turn = () => new Promise((resolve) => setTimeout(resolve));
 
 /** An error as the module throws it: its name is the code. */
 function coreError(code: string): Error {
@@ -66,7 +73,7 @@ export class GpuModel {
 class GpuPredictor {
   constructor(private readonly numbers: number) {}
 
-  predict(pose: Float32Array, streams: Streams, _skeleton: number, _mesh: number): void {
+  predict(pose: Float32Array, streams: Streams, _mesh: number): void {
     gpu.submitted.push(streams);
     // As the module does, it takes a copy of the pose before anything else happens.
     const refused = pose.every(Number.isFinite) ? undefined : 'not_finite';

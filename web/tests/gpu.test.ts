@@ -1,14 +1,12 @@
 // What the package does when a GPU refuses, fails or is lost, with a fake one. tests/browser has a real one.
 import { getEventListeners } from 'node:events';
-import { MeshBasicMaterial } from 'three';
 import { afterEach, beforeEach, expect, test, vi } from 'vitest';
 import { loadModel, type BackendChoice, type ClothModel, type Frame, type GpuLoadOptions } from 'ctsn';
-import { Cloth, deviceOf } from 'ctsn/three';
+import { deviceOf } from 'ctsn/three';
 import { startModule } from '../dist/raw.js';
 import { difference } from '../../tests/browser/safetensors.js';
 import { collectGarbage } from './allocation.js';
-import { characterOf } from './character.js';
-import { FakeDevice, FakeNavigator, gpu } from './fake-gpu.js';
+import { FakeDevice, FakeNavigator, gpu, turn } from './fake-gpu.js';
 import { bytesOf, loadConfident, readGolden } from './golden.js';
 
 vi.mock('../dist/raw-gpu.js', () => import('./fake-gpu.js'));
@@ -17,7 +15,7 @@ const tiny = readGolden('tiny');
 let browser: FakeNavigator;
 
 beforeEach(() => {
-  Object.assign(gpu, { started: 0, refusals: 0, held: false, answers: [], submitted: [], submitting: () => undefined });
+  gpu.reset();
   vi.stubGlobal('navigator', (browser = new FakeNavigator()));
 });
 afterEach(async () => {
@@ -28,9 +26,6 @@ afterEach(async () => {
 });
 
 const noAdapter = 'WebGPU finds no adapter on this machine';
-
-/** Waits until everything that is ready to happen has happened. */
-const turn = () => new Promise((resolve) => setTimeout(resolve));
 
 const load = (device?: FakeDevice): Promise<ClothModel> =>
   loadModel(bytesOf('tiny'), { backend: 'webgpu', device: device?.lent });
@@ -63,59 +58,6 @@ test('a model that goes to a GPU later needs the bytes of its caller no more', a
   bytes.fill(0);
   await model.setBackend('webgpu');
   expect([model.backend, model.fallback]).toEqual(['webgpu', undefined]);
-  model.dispose();
-});
-
-/** A cloth with two predictions on their way back and a third, of another quality, skipped. */
-async function dressLate(): Promise<{ model: ClothModel; cloth: Cloth }> {
-  const model = await load(new FakeDevice('lent'));
-  const cloth = new Cloth(model, characterOf(model.joints, tiny.poses[0]!), new MeshBasicMaterial());
-  gpu.held = true;
-  cloth.blend = 0;
-  cloth.update().update();
-  cloth.quality = 'skinned';
-  cloth.update();
-  expect(gpu.answers).toHaveLength(2);
-  return { model, cloth };
-}
-
-test('what a late answer is refused for, the next update throws, once', async () => {
-  const { model, cloth } = await dressLate();
-  gpu.answers[0]!.fail('not_finite');
-  await turn();
-  // The skipped one is asked for all the same, as it was wanted.
-  expect(gpu.answers).toHaveLength(3);
-  expect(gpu.submitted.at(-1)).toBe(2);
-  gpu.answers.forEach(({ come }) => come());
-  await cloth.settled();
-  expect(() => cloth.update()).toThrow(expect.objectContaining({ code: 'not_finite' }) as Error);
-  cloth.update();
-  expect(model.backend).toBe('webgpu');
-  model.dispose();
-});
-
-test('what a skipped prediction is refused for, the next update throws', async () => {
-  const { model, cloth } = await dressLate();
-  const [bone] = cloth.bones;
-  bone!.matrix.elements[12] = NaN;
-  cloth.update();
-  bone!.matrix.elements[12] = 0;
-  gpu.answers[0]!.come();
-  await turn();
-  gpu.answers[1]!.come();
-  await cloth.settled();
-  expect(() => cloth.update()).toThrow(expect.objectContaining({ code: 'not_finite' }) as Error);
-  model.dispose();
-});
-
-test('a GPU without room for the buffers of a cloth is asked for them once, and the cloth read back', async () => {
-  const device = new FakeDevice('lent');
-  const model = await load(device);
-  const asked = vi.spyOn(model, 'createBuffers').mockRejectedValue(new Error('no room'));
-  const renderer = { backend: { isWebGPUBackend: true, device: device.lent } };
-  const cloth = new Cloth(model, characterOf(model.joints, tiny.poses[0]!), new MeshBasicMaterial(), { renderer });
-  for (let update = 0; update < 3; update++) await cloth.update().settled();
-  expect([asked.mock.calls.length, cloth.zeroCopy, gpu.submitted.length]).toEqual([1, false, 2]);
   model.dispose();
 });
 

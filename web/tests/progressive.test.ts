@@ -286,8 +286,15 @@ test('what is no model is not kept when it is fetched ahead, nor when it was kep
 
 test('what cannot be kept is loaded all the same', async () => {
   vi.stubGlobal('fetch', () => Promise.resolve(new Response(bytesOf('tiny') as BodyInit)));
-  vi.stubGlobal('caches', { open: () => Promise.reject(new DOMException('', 'SecurityError')) });
-  (await loadModel(address(), { cache: 'wardrobe' })).dispose();
-  vi.stubGlobal('caches', undefined);
+  const refuse = () => Promise.reject(new DOMException('', 'SecurityError'));
+  for (const caches of [{ open: refuse }, { open: () => Promise.resolve({ match: refuse, put: refuse }) }, undefined]) {
+    vi.stubGlobal('caches', caches);
+    (await loadModel(address(), { cache: 'wardrobe' })).dispose();
+  }
+  // In a frame that is sandboxed even the name throws.
+  const get = () => {
+    throw new DOMException('', 'SecurityError');
+  };
+  Object.defineProperty(globalThis, 'caches', { configurable: true, get });
   (await loadModel(address(), { cache: 'wardrobe' })).dispose();
 });

@@ -188,11 +188,13 @@ fn metadata(strings: &Object) -> Result<BTreeMap<String, String>> {
 /// One entry of the header: the tensor and the range of its bytes.
 fn tensor<'a>(name: &str, entry: &Object, payload: &'a [u8]) -> Result<(Tensor<'a>, [usize; 2])> {
     let malformed = |reason: String| Error::NotSafetensors(format!("tensor {name}: {reason}"));
-    let dtype = match entry.get("dtype") {
-        Some(Value::String(text)) => Dtype::NAMES.iter().find(|known| known.0 == text).map(|known| known.1),
-        _ => None,
+    let text = match entry.get("dtype") {
+        Some(Value::String(text)) => text,
+        _ => "none",
     };
-    let dtype = dtype.ok_or_else(|| malformed("dtype is none of F32, F16, U32, U16, U8, I8".to_owned()))?;
+    let dtype = Dtype::NAMES.iter().find(|known| known.0 == text).map(|known| known.1);
+    let dtype =
+        dtype.ok_or_else(|| malformed(format!("dtype: wanted one of F32, F16, U32, U16, U8, I8, found {text}")))?;
     let shape = sizes(entry.get("shape")).ok_or_else(|| malformed("shape is no list of sizes".to_owned()))?;
     let offsets = sizes(entry.get("data_offsets")).filter(|offsets| offsets.len() == 2 && offsets[0] <= offsets[1]);
     let offsets = offsets.ok_or_else(|| malformed("data_offsets are no range".to_owned()))?;

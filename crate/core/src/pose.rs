@@ -141,7 +141,10 @@ impl Rig {
             return Err(Error::JointCount { wanted: stride * count, joints: count, found: joints.len() });
         }
         match joints.iter().position(|value| !value.is_finite()) {
-            Some(element) => Err(Error::NotFinite { what: "pose".to_owned(), element, found: joints[element] }),
+            Some(element) => {
+                let what = format!("pose, joint {}", self.joints[element / stride]);
+                Err(Error::NotFinite { what, element, found: joints[element] })
+            }
             None => Ok(()),
         }
     }

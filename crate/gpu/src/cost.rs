@@ -22,7 +22,7 @@ impl std::ops::AddAssign for Cost {
 /// A stage of a frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stage {
-    /// Name, as in the golden files; `normals`, `ride` and `surface` beside them.
+    /// Name, as in the golden files; `polish`, `collide`, `normals`, `ride` and `surface` beside them.
     pub name: String,
     /// Its dispatches.
     pub dispatches: usize,

@@ -2,7 +2,6 @@
 
 use crate::{Error, Result};
 use ctsn_shaders::{self as shaders, Access, Shader};
-use futures_channel::oneshot;
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -18,15 +17,9 @@ struct Inner {
     queue: wgpu::Queue,
     name: String,
     own: bool,
-    loss: Arc<Mutex<Loss>>,
+    /// Why the device is gone, once it is.
+    loss: Arc<Mutex<Option<String>>>,
     pipelines: Mutex<HashMap<(&'static str, Option<u32>), Pipeline>>,
-}
-
-/// Whether the device is gone, and who wants to know.
-#[derive(Default)]
-struct Loss {
-    reason: Option<String>,
-    waiting: Vec<oneshot::Sender<String>>,
 }
 
 /// A compiled shader.
@@ -41,11 +34,8 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-fn lose(loss: &Mutex<Loss>, reason: &str) {
-    let mut loss = lock(loss);
-    loss.reason.get_or_insert_with(|| reason.to_owned());
-    // A receiver that is gone wants no answer.
-    loss.waiting.drain(..).for_each(|sender| drop(sender.send(reason.to_owned())));
+fn lose(loss: &Mutex<Option<String>>, reason: String) {
+    lock(loss).get_or_insert(reason);
 }
 
 impl Gpu {
@@ -98,13 +88,11 @@ impl Gpu {
         let (device, queue) = adapter.request_device(&descriptor).await.map_err(refused)?;
         let gpu = Self::wrap(device, queue, own);
         let loss = gpu.inner.loss.clone();
-        gpu.inner
-            .device
-            .set_device_lost_callback(move |reason, message| lose(&loss, &format!("{reason:?}: {message}")));
+        gpu.inner.device.set_device_lost_callback(move |reason, message| lose(&loss, format!("{reason:?}: {message}")));
         if own {
             // What nobody asked about, such as memory running out in a frame, must not end the process.
             let loss = gpu.inner.loss.clone();
-            gpu.inner.device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| lose(&loss, &error.to_string())));
+            gpu.inner.device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| lose(&loss, error.to_string())));
         }
         Ok(gpu)
     }
@@ -149,18 +137,7 @@ impl Gpu {
 
     /// Why the device is lost, if it is.
     pub fn lost(&self) -> Option<String> {
-        lock(&self.inner.loss).reason.clone()
-    }
-
-    /// Waits until the device is lost; why. Ends with `None` when the last handle to the device is dropped.
-    pub fn until_lost(&self) -> impl Future<Output = Option<String>> + use<> {
-        let (sender, receiver) = oneshot::channel();
-        let mut loss = lock(&self.inner.loss);
-        match &loss.reason {
-            Some(reason) => drop(sender.send(reason.clone())),
-            None => loss.waiting.push(sender),
-        }
-        async { receiver.await.ok() }
+        lock(&self.inner.loss).clone()
     }
 
     /// [`Error::Lost`] once the device is lost.

@@ -9,6 +9,7 @@ use ctsn_core::network::{Activations, Drawn, predict};
 use ctsn_core::pose::Rig;
 use ctsn_core::{Confidence, Streams};
 use std::cell::RefCell;
+use std::mem;
 use std::sync::Arc;
 
 /// Streams in the order in which frames are recorded.
@@ -99,7 +100,7 @@ fn record(gpu: &Gpu, model: &HostModel) -> Result<Model> {
     let shown = a.riders.as_ref().map_or([positions, normals], own);
     let drawn = a.drawn.as_ref().map_or(shown, own);
     let results = a.stages().into_iter().filter_map(|(name, id)| Some((name, recorder.room(*id)?))).collect();
-    let Recorder { constants, rooms, .. } = recorder;
+    let (constants, rooms) = (mem::take(&mut recorder.constants), mem::take(&mut recorder.rooms));
     let (gpu, sizes, rig, trust) = (gpu.clone(), model.sizes, Arc::clone(&model.rig), Confidence::new(model));
     Ok(Model(Arc::new(Inner {
         gpu,

@@ -4,7 +4,7 @@ use crate::model::{Model, place};
 use crate::read::Reader;
 use crate::recording::{Dispatch, Operand, Room};
 use crate::{Error, Gpu, Result};
-use ctsn_core::{Confidence, Shares, Streams};
+use ctsn_core::{Confidence, Streams};
 use wgpu::BufferUsages as Usage;
 
 /// One cloth: a [`Model`] with the intermediate results of its own. Dropping it frees them.
@@ -26,7 +26,7 @@ pub(crate) struct Step {
     groups: [u32; 2],
 }
 
-/// A prediction read back: of the cloth's n vertices, or of the d drawn ones.
+/// A prediction read back: of the cloth's n vertices, of the w that are shown, or of the d drawn ones.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prediction {
     /// Positions, three numbers each, world, metres.
@@ -81,16 +81,16 @@ impl Predictor {
     /// # Errors
     /// A pose that is none; [`Error::Lost`].
     pub fn predict(&mut self, joints: &[f32], streams: Streams) -> Result<()> {
-        self.predict_faded(joints, streams, Shares::ALL)
+        self.predict_faded(joints, streams, 1.0)
     }
 
-    /// The same with a share of the mesh stream's residual; towards plain skinning nothing is blended here.
+    /// The same with a share `mesh` of the mesh stream's residual, 0 to 1; towards plain skinning nothing is blended.
     ///
     /// # Errors
     /// A pose that is none; [`Error::Lost`].
-    pub fn predict_faded(&mut self, joints: &[f32], streams: Streams, shares: Shares) -> Result<()> {
+    pub fn predict_faded(&mut self, joints: &[f32], streams: Streams, mesh: f32) -> Result<()> {
         self.model.rig().read_column_major(joints, &mut self.pose)?;
-        self.submit(streams, shares)
+        self.submit(streams, mesh)
     }
 
     /// Joint world transforms [J, 3, 4], row-major, metres: submits the frame and returns at once.
@@ -99,14 +99,14 @@ impl Predictor {
     /// A pose that is none; [`Error::Lost`].
     pub fn predict_row_major(&mut self, joints: &[f32], streams: Streams) -> Result<()> {
         self.model.rig().read(joints, &mut self.pose)?;
-        self.submit(streams, Shares::ALL)
+        self.submit(streams, 1.0)
     }
 
-    fn submit(&mut self, streams: Streams, shares: Shares) -> Result<()> {
+    fn submit(&mut self, streams: Streams, mesh: f32) -> Result<()> {
         let gpu = self.model.gpu();
         gpu.check()?;
         self.confidence = self.trust.as_mut().map_or(1.0, |trust| trust.of(self.model.rig(), &self.pose));
-        self.write_pose(shares);
+        self.write_pose(mesh);
         let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
         self.steps(streams).iter().for_each(|step| step.encode(&mut pass));
@@ -115,10 +115,10 @@ impl Predictor {
         gpu.check()
     }
 
-    pub(crate) fn write_pose(&self, shares: Shares) {
+    pub(crate) fn write_pose(&self, mesh: f32) {
         let (inner, queue) = (&self.model.0, self.model.gpu().queue());
         queue.write_buffer(&self.buffers[inner.joints], 0, bytemuck::cast_slice(&self.pose));
-        for (room, share) in inner.shares.iter().zip([1.0, shares.mesh]) {
+        for (room, share) in inner.shares.iter().zip([1.0, mesh]) {
             let share = self.confidence * share;
             room.iter().for_each(|room| queue.write_buffer(&self.buffers[*room], 0, bytemuck::bytes_of(&share)));
         }

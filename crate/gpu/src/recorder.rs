@@ -63,6 +63,14 @@ impl Device for Recorder<'_> {
     }
 }
 
+impl Drop for Recorder<'_> {
+    /// What no model took: in a browser dropping alone frees nothing.
+    fn drop(&mut self) {
+        self.constants.iter().for_each(wgpu::Buffer::destroy);
+        self.dispatches.iter().for_each(|dispatch| dispatch.params.destroy());
+    }
+}
+
 impl<'m> Recorder<'m> {
     pub fn new(gpu: &'m Gpu) -> Self {
         let (slots, indices, packed) = (Vec::new(), Vec::new(), HashMap::new());

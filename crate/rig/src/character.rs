@@ -24,7 +24,7 @@ pub struct Joint {
 pub struct Surface {
     /// Drawn vertex -> vertex of the welded mesh.
     pub vertex: Vec<u32>,
-    /// Texture coordinates per drawn vertex; empty when the file has none.
+    /// Texture coordinates per drawn vertex; zero in a part of the file that has none, empty when no part has any.
     pub uv: Vec<DVec2>,
     /// Drawn-vertex indices, three per triangle.
     pub triangles: Vec<[u32; 3]>,

@@ -1,9 +1,9 @@
 //! The body frame `N` (network.md §1) and the fixed path from the canonical pose to a pose: per-joint slerp.
 //! Every pose is reached from the canonical one; chaining poses would write their history into the data.
 
-use glam::{DAffine3, DMat3, DVec3};
+use glam::{DAffine3, DMat3};
 
-use crate::{Character, Pose};
+use crate::{Character, Joint, Pose};
 
 /// `N` of a pose.
 pub fn body_frame(character: &Character, pose: &Pose) -> DAffine3 {
@@ -78,9 +78,21 @@ pub fn motion(a: &Pose, b: &Pose) -> Vec<DAffine3> {
 
 /// Whether every transform is finite and invertible, and there is one per joint.
 pub fn is_sound(character: &Character, pose: &Pose) -> bool {
-    let sound = |joint: &DAffine3| {
+    check(character, pose).is_ok()
+}
+
+/// Why a pose is not sound, see [`is_sound`].
+pub fn check(character: &Character, pose: &Pose) -> Result<(), String> {
+    let (wanted, found) = (character.joints.len(), pose.len());
+    if wanted != found {
+        return Err(format!("pose: wanted {wanted} joints, found {found}"));
+    }
+    let sound = |(joint, bind): (&DAffine3, &Joint)| {
         let finite = joint.is_finite() && joint.translation.abs().max_element() < 1e6;
-        finite && joint.matrix3.determinant().abs() > 1e-12 && joint.matrix3.col(0) != DVec3::ZERO
+        // From the canonical pose: the lengths of a joint's own space may be in millimetres.
+        finite && (joint.matrix3 * bind.inverse_bind.matrix3).determinant().abs() > 1e-12
     };
-    pose.len() == character.joints.len() && pose.iter().all(sound)
+    let Some(at) = pose.iter().zip(&character.joints).position(|both| !sound(both)) else { return Ok(()) };
+    let (name, transform) = (&character.joints[at].name, pose[at].matrix3);
+    Err(format!("pose: wanted finite, invertible joints, found joint {at} ({name}) with {transform}"))
 }

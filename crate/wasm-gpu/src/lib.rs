@@ -4,8 +4,8 @@
 // On other targets there is no JavaScript.
 #![cfg(target_arch = "wasm32")]
 
+use ctsn_core::Streams;
 use ctsn_core::model::HostModel;
-use ctsn_core::{Shares, Streams};
 use ctsn_gpu::Error;
 use js_sys::futures::future_to_promise;
 use js_sys::{Array, Float32Array, Promise};
@@ -73,14 +73,13 @@ pub struct GpuPredictor(ctsn_gpu::Predictor);
 
 #[wasm_bindgen]
 impl GpuPredictor {
-    /// Submits the prediction for the joint world matrices `pose` [16·J], column-major, metres, with those shares of
-    /// the two streams.
+    /// Submits the prediction for the joint world matrices `pose` [16·J], column-major, metres, with
+    /// that share of the mesh stream's residual.
     ///
     /// # Errors
     /// A JavaScript `Error` whose `name` is the code of what is wrong with the pose or the device.
-    pub fn predict(&mut self, pose: &[f32], streams: usize, skeleton: f32, mesh: f32) -> Result<(), js_sys::Error> {
-        let shares = Shares { skeleton, mesh };
-        self.0.predict_faded(pose, STREAMS[streams], shares).map_err(|error| to_js(&error))
+    pub fn predict(&mut self, pose: &[f32], streams: usize, mesh: f32) -> Result<(), js_sys::Error> {
+        self.0.predict_faded(pose, STREAMS[streams], mesh).map_err(|error| to_js(&error))
     }
 
     /// How much of the network's folds the prediction last submitted shows, as on the processor.

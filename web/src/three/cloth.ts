@@ -184,6 +184,7 @@ export class Cloth<M extends Material | Material[] = Material, N extends AnyClot
   /** Shows it. What is on its way is void. */
   #begin(first: Frame | Promise<Frame> | undefined): void {
     this.#shown = ++this.#asked;
+    this.#failure = undefined;
     if (first) this.#receive(first);
     this.#place();
   }
@@ -209,8 +210,7 @@ export class Cloth<M extends Material | Material[] = Material, N extends AnyClot
   }
 
   #receive(answer: Frame | Promise<Frame>): void {
-    if ('output' in answer) this.#show(answer);
-    else this.#await(answer);
+    return 'output' in answer ? this.#show(answer) : this.#await(answer);
   }
 
   #draw(buffers: ClothBuffers): void {
@@ -241,8 +241,8 @@ export class Cloth<M extends Material | Material[] = Material, N extends AnyClot
       .finally(() => this.#inFlight--)
       .then((frame) => turn > this.#shown && this.#show(frame, turn))
       .finally(() => this.#skipped && this.#predict())
-      // Nobody called: the next update tells.
-      .catch((error: unknown) => (this.#failure = error))
+      // Nobody called: the next update tells, unless a later answer is shown.
+      .catch((error: unknown) => turn >= this.#shown && (this.#failure = error))
       .finally(() => this.#late.delete(late));
     this.#late.add(late);
   }

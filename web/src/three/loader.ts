@@ -1,4 +1,5 @@
 import { Loader } from 'three';
+import { either } from '../arrival.js';
 import type { BackendChoice } from '../backend.js';
 import type { Progress } from '../download.js';
 import { loadModel, type WasmSources } from '../load.js';
@@ -90,7 +91,7 @@ export class ClothLoader<M extends ClothModel = CpuClothModel> extends Loader<M>
   #signal(): AbortSignal {
     const { abortController } = this.manager as { abortController?: AbortController };
     const { signal } = this.#abort;
-    return abortController ? AbortSignal.any([signal, abortController.signal]) : signal;
+    return abortController ? either(signal, abortController.signal) : signal;
   }
 }
 

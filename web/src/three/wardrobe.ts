@@ -1,4 +1,5 @@
 import { Group, type Material, type SkinnedMesh } from 'three';
+import { either } from '../arrival.js';
 import { CtsnError } from '../error.js';
 import { loadModel, preload, type LoadOptions, type ModelSource } from '../load.js';
 import type { Quality } from '../quality.js';
@@ -141,9 +142,9 @@ export class Wardrobe<Name extends string = string> extends Group {
     this.#call.abort();
     const call = (this.#call = new AbortController());
     this.#wanted = names;
-    const either = signal ? AbortSignal.any([signal, call.signal]) : call.signal;
+    const end = signal ? either(signal, call.signal) : call.signal;
     const missing = names.filter((name) => !this.#garments.has(name));
-    const coming = missing.map((name) => this.#open(name, { signal: either, onProgress }));
+    const coming = missing.map((name) => this.#open(name, { signal: end, onProgress }));
     const settled = await Promise.allSettled(coming);
     const failed = settled.find((result) => result.status === 'rejected');
     if (failed || call.signal.aborted) {

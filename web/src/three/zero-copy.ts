@@ -1,5 +1,6 @@
 import type { BufferAttribute, BufferGeometry } from 'three';
 import type { ClothBuffers } from '../buffers.js';
+import type { CtsnError } from '../error.js';
 import type { ClothModel } from '../model.js';
 import type { AnyClothModel } from './options.js';
 import { deviceOf, drawFromArray, drawFromBuffer } from './renderer.js';
@@ -69,7 +70,9 @@ export class ZeroCopy {
     // Without buffers the cloth is read back, and drawn from arrays.
     const model = this.#model as ClothModel;
     const { device } = model;
-    const buffers = await model.createBuffers().catch(() => void (this.#refused = device));
+    // A model that left the device meanwhile says nothing of its room.
+    const refuse = (error: CtsnError) => void (error.code === 'lost' || (this.#refused = device));
+    const buffers = await model.createBuffers().catch(refuse);
     if (this.#disposed) buffers?.dispose();
     else this.#buffers = buffers;
   }

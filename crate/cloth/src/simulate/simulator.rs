@@ -17,7 +17,7 @@ use super::rescue::ROUNDS;
 use super::settings::Settings;
 use crate::wrap::SKIN;
 use crate::{Error, Result};
-use ctsn_rig::path::{body_frame, is_sound, to_body_frame};
+use ctsn_rig::path::{self, body_frame, to_body_frame};
 use ctsn_rig::{Character, Garment, Mesh, Pose, Surface};
 
 /// How far from where the body passes into itself cloth is pinched by it, metres.
@@ -112,11 +112,7 @@ impl Simulator {
     /// Why this cannot be simulated.
     pub(super) fn check(&self, template: &[DVec3], pose: &Pose) -> std::result::Result<(), String> {
         self.check_cloth("template", template)?;
-        if is_sound(&self.character, pose) {
-            return Ok(());
-        }
-        let (wanted, found) = (self.character.joints.len(), pose.len());
-        Err(format!("pose: wanted {wanted} finite, invertible joints, found {found}"))
+        path::check(&self.character, pose)
     }
 
     pub(super) fn check_cloth(&self, name: &str, cloth: &[DVec3]) -> std::result::Result<(), String> {

@@ -48,18 +48,7 @@ impl HostModel {
         let embedding = mlp(file, "embedding", 12 * joints, Some(m))?;
         let surroundings = surroundings::read(file, n)?;
         let layers = layers(file, surroundings.is_some())?;
-        let features = layers.last().map_or(3, |layer| layer.project.outputs / 4);
-        let heads = description.heads;
-        if layers.is_empty()
-            || heads == 0
-            || layers.iter().any(|layer| layer.project.outputs != 4 * features)
-            || features % heads != 0
-        {
-            return Err(Error::NotModel(format!(
-                "{heads} heads do not divide {} graph layers of {features} features",
-                layers.len()
-            )));
-        }
+        let features = width(&layers, description.heads)?;
         let vertex_mlp = mlp(file, "vertex", features, Some(k))?;
         let width = vertex_mlp
             .iter()
@@ -75,7 +64,7 @@ impl HostModel {
             return Err(Error::NotModel(format!("polish: wanted at most {MOST_STEPS} steps, found {steps}")));
         }
         Ok(Model {
-            sizes: Sizes { vertices: n, joints, embedding: m, basis: k, features, heads },
+            sizes: Sizes { vertices: n, joints, embedding: m, basis: k, features, heads: description.heads },
             cut: Cut::read(file, n, &graph, steps)?,
             graph,
             triangles,
@@ -237,6 +226,18 @@ fn layers(file: &Tensors, surrounded: bool) -> Result<Vec<Layer<Vec<f32>>>> {
         layers.push(layer);
     }
     Ok(layers)
+}
+
+/// Features of every graph layer, which the heads share.
+fn width(layers: &[Layer<Vec<f32>>], heads: usize) -> Result<usize> {
+    let features = layers.first().map_or(0, |layer| layer.project.outputs / 4);
+    if features == 0 || layers.iter().any(|layer| layer.project.outputs != 4 * features) {
+        return Err(Error::NotModel("graph: wanted one layer or more, all of one width".to_owned()));
+    }
+    if heads == 0 || !features.is_multiple_of(heads) {
+        return Err(Error::NotModel(format!("{heads} heads do not divide {features} features")));
+    }
+    Ok(features)
 }
 
 fn layer(file: &Tensors, l: usize, inputs: usize) -> Result<Layer<Vec<f32>>> {

@@ -16,7 +16,7 @@ pub fn file_bytes(mut file: Tensors) -> Vec<u8> {
     file.to_bytes_with_last(folds)
 }
 
-/// How learned tensors are stored; everything else stays F32.
+/// How learned tensors are stored; everything else stays F32 or, where it counts or names vertices, whole.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Storage {
     /// 32-bit floats.

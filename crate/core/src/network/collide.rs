@@ -45,7 +45,8 @@ pub fn stand<D: Device>(device: &mut D, model: &DeviceModel<D>, a: &mut Activati
     expose(device, body, &a.body_frame, Space::World, [&mut c.body, &mut c.normals, &mut c.exposed]);
 }
 
-/// Moves the predicted positions, which have been polished or not, out of the body that [stands](stand) there.
+/// Moves the predicted positions, which have been polished or not, out of the body that [stands](stand) there. What a
+/// model polishes by no step at all is not polished.
 pub fn collide<D: Device>(device: &mut D, model: &DeviceModel<D>, polished: bool, a: &mut Activations<D::Buffer>) {
     let (Some(body), Some(c)) = (&model.body, &mut a.collision) else { return };
     push(device, body, GAP, [&c.exposed, &c.normals, &a.positions], &mut c.push);
@@ -53,7 +54,7 @@ pub fn collide<D: Device>(device: &mut D, model: &DeviceModel<D>, polished: bool
     let [first, second] = &mut c.displacement;
     device.run(Spread { offsets, neighbours, push: &c.push, before: &c.push, after: &mut *first }.into());
     device.run(Spread { offsets, neighbours, push: &c.push, before: first, after: &mut *second }.into());
-    if let (Some(Cut { squares, .. }), true) = (&model.cut, polished) {
+    if let (Some(Cut { squares, steps: 1.., .. }), true) = (&model.cut, polished) {
         let (share, positions, push) = (&a.mesh_share, &a.positions, &c.push);
         for _ in 0..SLIDES {
             let (before, after) = (&*second, &mut *first);

@@ -49,7 +49,9 @@ impl Predictor {
     /// A model at a chosen SIMD level, on chosen threads; how many changes no number.
     pub fn on_threads(model: HostModel, level: Level, threads: Threads) -> Self {
         let device = Cpu::with_threads(level, threads);
-        let activations = Activations::new(&model, |_, length| vec![0.0; length]);
+        let mut activations = Activations::new(&model, |_, length| vec![0.0; length]);
+        // Only on a GPU something is drawn from vertices that are split at seams in every frame.
+        activations.drawn = None;
         let trust = Confidence::new(&model);
         Self { device, model: Arc::new(model), activations, trust, confidence: 1.0 }
     }
@@ -217,16 +219,6 @@ impl Predictor {
     /// Its triangles [t, 3].
     pub fn shown_triangles(&self) -> &[u32] {
         self.model.ride.as_ref().map_or(self.triangles(), |ride| &ride.triangles)
-    }
-
-    /// Positions of the drawn vertices [d, 3]: of the surface where the model has one, of the cloth otherwise.
-    pub fn drawn_positions(&self) -> &[f32] {
-        self.activations.drawn.as_ref().map_or(self.positions(), |drawn| &drawn.positions)
-    }
-
-    /// Unit normals of the drawn vertices [d, 3].
-    pub fn drawn_normals(&self) -> &[f32] {
-        self.activations.drawn.as_ref().map_or(self.normals(), |drawn| &drawn.normals)
     }
 
     /// Every intermediate result of the last prediction.

@@ -84,13 +84,15 @@ pub fn remaining(taken: Duration, done: u64, all: u64) -> HumanDuration {
 pub fn list_clips(path: &Path, character: &Character) {
     let seconds = |clip: &Clip| (clip.poses.len().max(1) - 1) as f64 / clip.rate;
     let clips = character.clips.iter().map(|clip| format!("{} ({:.1} s)", clip.name, seconds(clip)));
+    // Not `sum`, which is -0 for no clips.
+    let all = character.clips.iter().map(seconds).fold(0.0, |all, one| all + one);
     println!(
         "{}: {} joints, {} triangles; {} clips, {:.0} s: {}",
         path.display(),
         character.joints.len(),
         character.body.mesh.triangles.len(),
         character.clips.len(),
-        character.clips.iter().map(seconds).sum::<f64>(),
+        all,
         clips.collect::<Vec<_>>().join(", ")
     );
 }

@@ -245,4 +245,7 @@ fn a_dressed_character_is_split() {
     let faces = |of: &ctsn_rig::Character| of.body.mesh.triangles.len();
     assert_eq!(faces(&rest) + top.mesh.triangles.len(), faces(&whole));
     assert_eq!((rest.parts.get("Hips"), rest.parts.len()), (Some(&rest.root), 1), "VRM's bones are written again");
+    edit(&folder.path("character.glb"), |json, _| drop(json.as_object_mut().expect("an object").remove("animations")));
+    let told = folder.accepts("split character.glb -o still");
+    assert!(told.contains("; 0 clips, 0 s"), "{told}");
 }

@@ -135,9 +135,6 @@ impl Record for Attend<Id, Id, IndexId> {
     fn record(self, recorder: &mut Recorder) {
         let Self { offsets, neighbours, heads, projected, potentials, edge, gate, attended, output, .. } = self;
         let (n, features) = (recorder.indices(offsets).len() - 1, recorder.length(self.norm_bias));
-        if features > shaders::MAX_FEATURES {
-            recorder.fail("features of a graph layer".to_owned(), features as u64, shaders::MAX_FEATURES as u64);
-        }
         let mut operands = vec![
             recorder.indexed(offsets),
             recorder.indexed(neighbours),
@@ -161,6 +158,9 @@ impl Record for Attend<Id, Id, IndexId> {
         if recorder.gpu.is_software() {
             operands.push(recorder.rows(attended, features, features));
             return recorder.dispatch(&shaders::ATTEND_VERTEX, params, &operands, [n, 1], output);
+        }
+        if features > shaders::MAX_FEATURES {
+            recorder.fail("features of a graph layer".to_owned(), features as u64, shaders::MAX_FEATURES as u64);
         }
         let limit = recorder.gpu.device().limits().max_compute_workgroups_per_dimension as usize;
         recorder.dispatch(&shaders::ATTEND, params, &operands, [n.min(limit), n.div_ceil(limit)], output);
@@ -218,7 +218,7 @@ impl Record for Polish<Id, Id, IndexId> {
         let momentum = if first { 0.0 } else { polish::MOMENTUM };
         let (vertices, reach) = (n as u32, polish::REACH);
         let params = shaders::Polish { vertices, own, others, rate, momentum, reach, gap: GAP };
-        recorder.dispatch(&shaders::POLISH, params, &operands, [n, 1], positions);
+        recorder.dispatch(&shaders::POLISH, params, &operands, [n, 1], moves);
     }
 }
 

@@ -11,6 +11,8 @@ use glam::{DAffine3, DVec3};
 
 /// Most poses of one sampled clip: over an hour at 60 per second.
 const MOST_POSES: f64 = 300_000.0;
+/// Least share of a node's own scale that an animation scales it to.
+const LEAST_SCALE: f64 = 1e-3;
 
 /// One animated property of one node.
 struct Track {
@@ -52,7 +54,7 @@ pub(super) fn sample(
             let xyz = DVec3::new(value[0], value[1], value[2]);
             match track.property {
                 Property::Translation => local[track.node].translation = xyz,
-                Property::Scale => local[track.node].scale = xyz,
+                Property::Scale => local[track.node].scale = invertible(xyz, nodes.local[track.node].scale),
                 _ => local[track.node].rotation = unit_rotation(value),
             }
             matrices[track.node] = local[track.node].affine();
@@ -60,6 +62,13 @@ pub(super) fn sample(
         nodes.worlds(&matrices)
     });
     Ok(Some(frames.collect()))
+}
+
+/// A scale without its noughts, each with its sign. To scale a joint to nothing is how clips hide what is in a hand or
+/// on a head. Nobody could undo such a transform, and the pose would be of no use for all the other joints either.
+fn invertible(scale: DVec3, own: DVec3) -> DVec3 {
+    let least = LEAST_SCALE * DVec3::select(own.cmpeq(DVec3::ZERO), DVec3::ONE, own.abs());
+    scale.abs().max(least).copysign(scale)
 }
 
 impl Track {
@@ -170,6 +179,13 @@ mod tests {
         let third = unit_rotation(turn.at(1.0 / 3.0));
         let wanted = glam::DQuat::from_rotation_y(std::f64::consts::FRAC_PI_2 / 3.0);
         assert!(third.dot(wanted).abs() > 1.0 - 1e-12, "{third}");
+    }
+
+    #[test]
+    fn scales_do_not_vanish() {
+        let (own, scale) = (DVec3::new(1.0, -0.01, 0.0), DVec3::new(-1e-9, 0.0, 0.5));
+        assert_eq!(invertible(scale, own), DVec3::new(-1e-3, 1e-5, 0.5));
+        assert_eq!(invertible(DVec3::ZERO, DVec3::ZERO), DVec3::splat(1e-3));
     }
 
     #[test]

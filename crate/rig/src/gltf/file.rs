@@ -12,7 +12,7 @@ use ::gltf::json::image::MimeType;
 use ::gltf::json::validation::Checked;
 use ::gltf::{Accessor, Document, Semantic};
 use serde_json::Value;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 use std::path::{Path, PathBuf};
 
 /// Most components one accessor may hold: 2^27 f64 are 1 GiB, far more than any character needs.
@@ -23,6 +23,8 @@ pub(super) struct File {
     pub document: Document,
     /// Accessor of `_PIN` by mesh and primitive: the `gltf` crate drops the attributes it does not know.
     pub pins: BTreeMap<(usize, usize), usize>,
+    /// Nodes that are not shown, nor what is below them (KHR_node_visibility).
+    pub hidden: HashSet<usize>,
     /// Node of each part of a body that the file names, see [`super::vrm`].
     pub parts: BTreeMap<String, usize>,
     buffers: Vec<Vec<u8>>,
@@ -38,12 +40,13 @@ impl File {
     }
 
     pub fn parse(bytes: &[u8], folder: PathBuf) -> Read<File> {
-        let Container { json, buffers } = Container::read(bytes, &folder)?;
-        let (pins, parts) = (pins(&json), vrm::parts(&json));
+        let Container { mut json, buffers } = Container::read(bytes, &folder)?;
+        drop_channels_without_node(&mut json);
+        let (pins, hidden, parts) = (pins(&json), hidden(&json), vrm::parts(&json));
         let mut json: Root = serde_json::from_value(json).map_err(|error| format!("not a glTF: {error}"))?;
         mend(&mut json)?;
         let document = Document::from_json(json).map_err(|error| format!("not a valid glTF: {error}"))?;
-        Ok(File { document, pins, parts, buffers, folder })
+        Ok(File { document, pins, hidden, parts, buffers, folder })
     }
 
     /// All components of an accessor, finite; normalised integers are mapped to [0, 1] or [-1, 1]. `what` names the
@@ -125,6 +128,17 @@ impl File {
     }
 }
 
+/// A channel may move something else than a node (KHR_animation_pointer), which is nothing to us; the `gltf` crate
+/// demands a node of each.
+fn drop_channels_without_node(json: &mut Value) {
+    let animations = json.get_mut("animations").and_then(Value::as_array_mut);
+    for animation in animations.into_iter().flatten() {
+        if let Some(channels) = animation.get_mut("channels").and_then(Value::as_array_mut) {
+            channels.retain(|it| it["target"].as_object().is_none_or(|target| target.contains_key("node")));
+        }
+    }
+}
+
 /// Refuses references that the `gltf` crate does not validate and panics on. Fills in what the crate demands and
 /// nothing here needs: bounds of positions, and the type of an image, which its bytes tell anyway.
 fn mend(json: &mut Root) -> Read<()> {
@@ -173,6 +187,13 @@ fn pins(json: &Value) -> BTreeMap<(usize, usize), usize> {
     });
     let accessor = |primitive: &Value| primitive["attributes"]["_PIN"].as_u64().map(|index| index as usize);
     primitives.filter_map(|(place, primitive)| Some((place, accessor(&primitive)?))).collect()
+}
+
+/// Nodes that say of themselves not to be visible.
+fn hidden(json: &Value) -> HashSet<usize> {
+    let nodes = json["nodes"].as_array().into_iter().flatten().enumerate();
+    let hidden = |node: &Value| node["extensions"]["KHR_node_visibility"]["visible"] == false;
+    nodes.filter(|(_, node)| hidden(node)).map(|(index, _)| index).collect()
 }
 
 /// Refuses percent-encodings that are not UTF-8, on which the `gltf` crate panics.

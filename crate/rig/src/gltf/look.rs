@@ -28,7 +28,10 @@ pub enum Look {
 /// Words in names, and what they say. The first that fits says it: `HairAccessory` is hair.
 const WORDS: [(Look, &[&str]); 9] = [
     (Look::Hair, &["hair", "beard", "moustache", "ponytail", "bangs"]),
-    (Look::Eyes, &["eye", "lash", "brow", "iris", "teeth", "tooth", "tongue"]),
+    (
+        Look::Eyes,
+        &["eye", "eyeball", "eyelid", "eyelash", "lash", "eyebrow", "brow", "iris", "teeth", "tooth", "tongue"],
+    ),
     (Look::Shoes, &["shoe", "footwear", "boot", "sock", "sandal", "sneaker"]),
     (Look::Skirt, &["skirt"]),
     (Look::Dress, &["dress", "onepiece", "robe", "gown", "overall"]),
@@ -123,6 +126,9 @@ mod tests {
         for (names, look) in [
             (["Wolf3D_Outfit_Top", "", "Wolf3D_Outfit_Top"], Some(Look::Top)),
             (["Wolf3D_Eye", "", "EyeLeft"], Some(Look::Eyes)),
+            (["Std_Eyelash", "", ""], Some(Look::Eyes)),
+            (["", "Eyelashes", ""], Some(Look::Eyes)),
+            (["eyebrow001", "", ""], Some(Look::Eyes)),
             (["", "", "Wolf3D_Glasses"], Some(Look::Accessory)),
             (["N00_000_Hair_00_HAIR (Instance)", "Face", "Face"], Some(Look::Hair)),
             (["N00_010_01_Onepiece_00_CLOTH", "Body", "Body"], Some(Look::Dress)),

@@ -37,11 +37,12 @@ type Read<T> = std::result::Result<T, String>;
 
 /// Reads a rigged character and its clips, sampled at `rate` poses per second.
 ///
-/// All skinned meshes become one body. The glTF skin with most vertices sets the canonical space. A vertex without
-/// weights takes those of the nearest vertex that has some, or follows the hip when none has. A body that faces inwards
-/// is turned. Hair, eyes and accessories, by their names, are drawn, but hold no cloth. Morph targets are taken as
-/// exported: by the weights of their mesh. Meshes without a skin and animations that move no joint are left out. A file
-/// without clips is accepted, see [`Character::clip`].
+/// All skinned meshes that its scene shows become one body. Of the glTF skins that list the hip, the one with most
+/// vertices sets the canonical space. A vertex without weights takes those of the nearest vertex that has some, or
+/// follows the hip when none has. A body that faces inwards is turned. Hair, eyes and accessories, by their names, are
+/// drawn, but hold no cloth. Morph targets are taken as exported: by the weights of their node, or where it has none
+/// those of their mesh. Meshes without a skin and animations that move no joint are left out. A file without clips is
+/// accepted, see [`Character::clip`].
 pub fn read_character(path: &Path, rate: f64) -> Result<Character> {
     let file = File::open(path)?;
     character(&file, rate).map_err(|reason| Error::File { path: path.into(), reason })
@@ -102,9 +103,9 @@ fn character_of(file: &File, rate: f64, kept: impl Fn(usize) -> bool) -> Read<Ch
         return Err("has no skin: wanted a rigged character, whose mesh is bound to a skeleton".to_string());
     }
     let nodes = Nodes::read(&file.document)?;
-    let parts = part::read(file)?;
+    let parts = part::read(file, &nodes)?;
     let skeleton = Skeleton::read(file, &nodes, &parts)?;
-    let skeleton = skeleton.ok_or("has a skin, but no mesh of triangles uses it")?;
+    let skeleton = skeleton.ok_or("has a skin, but no mesh of triangles that its scene shows uses it")?;
     let upright = skeleton.upright()?;
     let metres_per_unit = metres_per_unit(&body(&parts, &skeleton, upright, 1.0)?)?;
     let canonical = DAffine3::from_scale(DVec3::splat(metres_per_unit)) * upright;
@@ -223,7 +224,7 @@ fn garment_of(file: &File, scale: f64, kept: impl Fn(usize) -> bool) -> Read<(Ga
     }
     let nodes = Nodes::read(&file.document)?;
     let worlds = nodes.worlds(&nodes.rest);
-    let parts = part::read(file)?;
+    let parts = part::read(file, &nodes)?;
     let skeleton = Skeleton::read(file, &nodes, &parts)?;
     let mut soup = Soup::default();
     let metres = DAffine3::from_scale(DVec3::splat(scale));
@@ -244,7 +245,7 @@ fn garment_of(file: &File, scale: f64, kept: impl Fn(usize) -> bool) -> Read<(Ga
     }
     let welded = soup.weld();
     if welded.mesh.triangles.is_empty() {
-        return Err("holds no garment: no mesh has a triangle with an area".to_string());
+        return Err("holds no garment: no mesh that its scene shows has a triangle with an area".to_string());
     }
     let own = file.document.as_json().asset.generator.as_deref() == Some(write::GENERATOR);
     let source = Source { own, ..welded.source };
@@ -257,7 +258,7 @@ mod tests;
 /// What the parts of a file are.
 fn listed(file: &File) -> Read<Vec<Listed>> {
     let nodes = Nodes::read(&file.document)?;
-    let parts = part::read(file)?;
+    let parts = part::read(file, &nodes)?;
     let skeleton = Skeleton::read(file, &nodes, &parts)?.ok_or("has no skin: wanted a rigged character")?;
     let canonical = skeleton.upright()?;
     let joints = skeleton.joints(canonical, 1.0)?;

@@ -49,7 +49,7 @@ fn packed(bytes: &[u8]) -> Read<Vec<u8>> {
         let groups: Vec<(&[usize], &[Kept])> =
             if alone { indices.chunks(1).zip(kept.chunks(1)).collect() } else { vec![(&indices, &kept)] };
         for (indices, kept) in groups {
-            out.add(indices, kept, &mut places)?;
+            out.add(indices, kept, alone, &mut places)?;
         }
     }
     out.leave_others(&mut json, &bin, &views, &places);
@@ -99,8 +99,9 @@ struct Output {
 }
 
 impl Output {
-    /// A compressed view of what these accessors hold, one behind the other. Notes where: view, offset, how.
-    fn add(&mut self, indices: &[usize], kept: &[Kept], places: &mut Places) -> Read<()> {
+    /// A compressed view of what these accessors hold, one behind the other: of a mesh, or what animates. Notes where:
+    /// view, offset, how.
+    fn add(&mut self, indices: &[usize], kept: &[Kept], of_mesh: bool, places: &mut Places) -> Read<()> {
         let Kept { stride, mode, filter, .. } = kept[0];
         let mut workspace = Workspace::default();
         let bytes: Vec<u8> = kept.iter().flat_map(|part| &part.bytes).copied().collect();
@@ -122,7 +123,7 @@ impl Output {
             "extensions": { CODING: { "buffer": 0, "byteOffset": self.bin.len(), "byteLength": coded.len(),
                 "byteStride": stride, "count": count, "mode": mode, "filter": filter } } });
         // Of vertices the format wants the stride where elements are padded; of what animates it forbids it.
-        if mode == "ATTRIBUTES" && indices.len() == 1 {
+        if mode == "ATTRIBUTES" && of_mesh {
             view["byteStride"] = json!(stride);
         }
         let mut offset = 0;

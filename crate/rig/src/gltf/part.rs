@@ -1,15 +1,17 @@
 //! The triangles of the mesh nodes, as the file has them: vertices split at seams, skin weights per vertex.
-//! glTF 2.0 §3.7.2 (primitives), §3.7.3.3 (skinned attributes). Morph targets are taken by the weights of
-//! their mesh: as exported.
+//! glTF 2.0 §3.5.1 (scenes), §3.7.2 (primitives), §3.7.3.3 (skinned attributes). Morph targets are taken as exported:
+//! by the weights of their node, or where it has none those of their mesh.
 
 use super::Read;
 use super::colour::Painter;
 use super::file::File;
+use super::nodes::Nodes;
 use crate::SkinWeights;
 use ::gltf::accessor::Dimensions;
 use ::gltf::mesh::Mode;
 use ::gltf::{Primitive, Semantic};
 use glam::{DVec2, DVec3};
+use std::collections::HashSet;
 
 /// One primitive of one mesh node, in the mesh's own space.
 #[derive(Clone)]
@@ -34,11 +36,12 @@ pub(super) struct Part {
     pub names: [String; 3],
 }
 
-/// Every triangle primitive of every mesh node, in the order of the file.
-pub(super) fn read(file: &File) -> Read<Vec<Part>> {
+/// Every triangle primitive of every mesh node that is shown, in the order of the file.
+pub(super) fn read(file: &File, nodes: &Nodes) -> Read<Vec<Part>> {
     let mut painter = Painter::new(file);
     let mut parts = Vec::new();
-    for node in file.document.nodes() {
+    let shown = shown(file, nodes);
+    for node in file.document.nodes().filter(|node| shown[node.index()]) {
         let mesh = node.mesh();
         for primitive in mesh.iter().flat_map(|mesh| mesh.primitives()) {
             let pins = mesh.iter().find_map(|mesh| file.pins.get(&(mesh.index(), primitive.index())));
@@ -56,6 +59,20 @@ pub(super) fn read(file: &File) -> Read<Vec<Part>> {
         }
     }
     Ok(parts)
+}
+
+/// Whether each node is in the file's scene and not hidden: the default scene, or the first where none is the default.
+/// In a file without scenes every node is.
+fn shown(file: &File, nodes: &Nodes) -> Vec<bool> {
+    let scene = file.document.default_scene().or(file.document.scenes().next());
+    let tops: Option<HashSet<usize>> = scene.map(|scene| scene.nodes().map(|node| node.index()).collect());
+    let mut shown = vec![false; nodes.parent.len()];
+    for &node in &nodes.order {
+        let above = nodes.parent[node];
+        let is_top = tops.as_ref().map_or(above.is_none(), |tops| tops.contains(&node));
+        shown[node] = (is_top || above.is_some_and(|above| shown[above])) && !file.hidden.contains(&node);
+    }
+    shown
 }
 
 /// One primitive, or `None` for points, lines, and where positions are missing. `skin`: its index and number of joints.

@@ -11,6 +11,7 @@ use crate::{Joint, Pose, SkinWeights};
 use ::gltf::Document;
 use ::gltf::accessor::Dimensions;
 use glam::{DAffine3, DMat3, DVec3};
+use std::cmp::Reverse;
 use std::collections::{BTreeMap, HashSet};
 
 /// A glTF skin: node and inverse bind matrix of each of its joints.
@@ -31,7 +32,7 @@ pub(super) struct Skeleton {
     parent: Vec<Option<usize>>,
     /// Skins in use, by their index in the file.
     skins: BTreeMap<usize, Skin>,
-    /// The skin with most vertices: its bind space is the canonical one.
+    /// Of the skins that list the hip, the one with most vertices: its bind space is the canonical one.
     main: usize,
     /// World transforms of all nodes at the file's own pose, file units.
     rest: Vec<DAffine3>,
@@ -41,10 +42,15 @@ impl Skeleton {
     /// The skeleton of the skins that `parts` use, or `None` when they use none.
     pub fn read(file: &File, nodes: &Nodes, parts: &[Part]) -> Read<Option<Skeleton>> {
         let mut vertices: BTreeMap<usize, usize> = BTreeMap::new();
-        for part in parts {
-            part.skin.iter().for_each(|&skin| *vertices.entry(skin).or_default() += part.positions.len());
+        for (part, skin) in parts.iter().filter_map(|part| Some((part, part.skin?))) {
+            // Parts of a mesh may share one list of vertices: each counts those it draws.
+            let drawn: HashSet<u32> = part.triangles.iter().flatten().copied().collect();
+            *vertices.entry(skin).or_default() += drawn.len();
         }
-        let Some((&main, _)) = vertices.iter().rev().max_by_key(|entry| entry.1) else { return Ok(None) };
+        // Largest first, of equals the first.
+        let mut largest: Vec<usize> = vertices.keys().copied().collect();
+        largest.sort_by_key(|skin| Reverse(vertices[skin]));
+        let Some(&main) = largest.first() else { return Ok(None) };
         let in_use = file.document.skins().filter(|skin| vertices.contains_key(&skin.index()));
         let skins =
             in_use.map(|skin| Ok((skin.index(), Skin::read(file, &skin)?))).collect::<Read<BTreeMap<_, _>>>()?;
@@ -63,20 +69,30 @@ impl Skeleton {
         };
         let told = skeleton.parts(file).get("Hips").copied();
         skeleton.hip = told.map_or_else(|| skeleton.find_hip(parts), Ok)?;
+        // Hair may have more vertices than the body, and a skin of its own that knows only the head.
+        let hip = skeleton.nodes[skeleton.hip];
+        if let Some(&main) = largest.iter().find(|skin| skeleton.skins[skin].nodes.contains(&hip)) {
+            skeleton.main = main;
+        }
         Ok(Some(skeleton))
     }
 
-    /// The topmost joint named like a hip; else the first, from the top, that moves vertices or has two joint children.
+    /// The topmost joint named like a hip; else the first, from the top of the trees that the largest skin's joints are
+    /// in, that moves vertices or has two joint children.
     fn find_hip(&self, parts: &[Part]) -> Read<usize> {
-        let main = &self.skins[&self.main];
-        let candidates = || (0..self.nodes.len()).filter(|&joint| main.nodes.contains(&self.nodes[joint]));
-        let depth = |joint: usize| std::iter::successors(self.parent[joint], |&above| self.parent[above]).count();
-        if let Some(named) = candidates().filter(|&joint| names_a_hip(&self.names[joint])).min_by_key(|&j| depth(j)) {
-            return Ok(named);
+        let joints = 0..self.nodes.len();
+        let upwards = |joint: usize| std::iter::successors(Some(joint), |&above| self.parent[above]);
+        let named = joints.clone().filter(|&joint| names_a_hip(&self.names[joint]));
+        if let Some(topmost) = named.min_by_key(|&joint| upwards(joint).count()) {
+            return Ok(topmost);
         }
-        let of_main = parts.iter().filter(|part| part.skin == Some(self.main));
+        let slots = |part: &Part| part.weights.iter().flatten().map(|entry| entry.0).collect::<HashSet<usize>>();
+        let moved = parts.iter().filter_map(|part| Some((slots(part), &self.skins[&part.skin?])));
         let moving: HashSet<usize> =
-            of_main.flat_map(|part| part.weights.iter().flatten().map(|entry| main.nodes[entry.0])).collect();
+            moved.flat_map(|(slots, skin)| slots.into_iter().map(|slot| skin.nodes[slot])).collect();
+        let of_largest = joints.clone().filter(|&joint| self.skins[&self.main].nodes.contains(&self.nodes[joint]));
+        let tops: HashSet<usize> = of_largest.filter_map(|joint| upwards(joint).last()).collect();
+        let candidates = || joints.clone().filter(|&joint| upwards(joint).any(|above| tops.contains(&above)));
         let children = |joint: usize| self.parent.iter().filter(|&&parent| parent == Some(joint)).count();
         let first = candidates().find(|&joint| moving.contains(&self.nodes[joint]) || children(joint) >= 2);
         first.or(candidates().next()).ok_or_else(|| "its skin has no joints".to_string())

@@ -18,7 +18,7 @@ pub(super) struct Soup {
     pub positions: Vec<DVec3>,
     /// [v]; an empty list where a vertex has no weights.
     pub weights: Vec<SkinWeights>,
-    /// [v], or fewer where a part has none.
+    /// [v]; zero where a part has none, and fewer where the last have none.
     pub uv: Vec<DVec2>,
     /// [v] whether springs hold the vertex to the body; empty in a part without pins.
     pub pinned: Vec<bool>,
@@ -75,7 +75,11 @@ impl Soup {
                 *place[old].get_or_insert_with(|| {
                     self.positions.push(part.positions[old]);
                     self.weights.push(part.weights.get(old).cloned().unwrap_or_default());
-                    self.uv.extend(part.uv.get(old));
+                    if let Some(uv) = part.uv.get(old) {
+                        // The vertices before may be of a part without.
+                        self.uv.resize(self.positions.len() - 1, DVec2::ZERO);
+                        self.uv.push(*uv);
+                    }
                     self.colour.extend(part.colour.get(old));
                     self.pinned.push(part.pinned.get(old).copied().unwrap_or_default());
                     self.numbers.push(first + corner);
@@ -133,7 +137,10 @@ impl Soup {
         pins.sort_unstable();
         pins.dedup();
         let numbers = kept.iter().map(|&at| self.numbers[at]).collect();
-        let uv = if self.uv.len() == self.positions.len() { self.uv } else { Vec::new() };
+        let mut uv = self.uv;
+        if !uv.is_empty() {
+            uv.resize(self.positions.len(), DVec2::ZERO);
+        }
         Welded {
             mesh: Mesh { positions, triangles },
             weights: kept.iter().map(|&at| self.weights[at].clone()).collect(),

@@ -4,6 +4,7 @@ mod hostile;
 mod packed;
 mod reading;
 mod small;
+mod unusual;
 mod world;
 
 use super::write::{Appearance, write_character};

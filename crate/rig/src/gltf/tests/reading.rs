@@ -252,6 +252,7 @@ fn a_second_skin_joins_the_first() {
         json["meshes"].as_array_mut().unwrap().push(json!({ "primitives": [{
             "attributes": { "POSITION": first + 1, "JOINTS_0": first + 2, "WEIGHTS_0": first + 3 } }] }));
         json["nodes"].as_array_mut().unwrap().push(json!({ "mesh": 1, "skin": 1 }));
+        json["scenes"][0]["nodes"].as_array_mut().unwrap().push(json!(7));
     });
     let read = read_character(&path, RATE).unwrap();
     assert_eq!(read.body.mesh.triangles.len(), plain.body.mesh.triangles.len() + 1);

@@ -37,6 +37,28 @@ fn a_packed_character_stands_and_moves_as_before() {
 }
 
 #[test]
+fn only_what_meshes_are_made_of_states_its_stride() {
+    let folder = tempfile::tempdir().unwrap();
+    let [plain, small] = ["plain.glb", "small.glb"].map(|name| folder.path().join(name));
+    // Of one clip there is one accessor of key times: a stream of a single accessor.
+    let mut tube = tube();
+    tube.clips.truncate(1);
+    write_character(&plain, &tube, &Appearance::default()).unwrap();
+    pack(&plain, &small).unwrap();
+    let json = json_of(&small);
+    let stride = |accessor: &Value| {
+        let view = json["accessors"][accessor.as_u64().unwrap() as usize]["bufferView"].as_u64().unwrap();
+        json["bufferViews"][view as usize]["byteStride"].as_u64()
+    };
+    for sampler in json["animations"][0]["samplers"].as_array().unwrap() {
+        assert_eq!([&sampler["input"], &sampler["output"]].map(stride), [None, None], "glTF forbids it");
+    }
+    let primitive = &json["meshes"][0]["primitives"][0];
+    assert_eq!(stride(&primitive["attributes"]["NORMAL"]), Some(4));
+    assert_eq!(stride(&primitive["indices"]), None);
+}
+
+#[test]
 fn what_is_not_understood_stays_as_it_is() {
     let folder = tempfile::tempdir().unwrap();
     let [plain, small] = ["plain.glb", "small.glb"].map(|name| folder.path().join(name));

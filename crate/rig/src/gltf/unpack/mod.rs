@@ -11,7 +11,8 @@ use ::gltf::buffer::{Data, Source};
 use serde_json::{Value, json};
 use std::path::Path;
 
-/// Required extensions that change only how a surface looks, that say more of a character, or that are unpacked here.
+/// Required extensions that change only how a surface looks, that say more of a character or what of it is shown, or
+/// that are unpacked here.
 const UNDERSTOOD: [&str; 12] = [
     "KHR_materials_",
     "KHR_texture_",
