@@ -118,18 +118,17 @@ test('beside a map the rival wears its fabric', async () => {
   await open(page, 'Compare');
   await page.getByLabel('with plain skinning').check({ force: true });
   await expect.poll(() => page.getByText('Plain skinning', { exact: true }).isVisible(), patience).toBe(true);
-  await page.getByLabel('Where the network').fill('0.3');
-  /** The figure, without what the panel's shadow falls on: it is all on the rival's side of the line. */
-  const side = async () => {
+  /** The figure, without what the panel's shadow falls on: all of it on the rival's side of the line, or the network's. */
+  const side = async (line: number) => {
+    await page.getByLabel('Where the network').fill(`${line}`);
     await page.waitForTimeout(500);
     return page.screenshot({ clip: { x: 320, y: 60, width: 260, height: 440 } });
   };
-  const fabric = await side();
+  const [network, rival] = [await side(0.7), await side(0.3)];
   await open(page, 'Maps');
   await page.getByRole('radio', { name: 'Stretch' }).check({ force: true });
-  expect((await side()).equals(fabric)).toBe(true);
-  await page.getByLabel('Where the network').fill('0.7');
-  expect((await side()).equals(fabric), 'the other side has the map').toBe(false);
+  expect((await side(0.3)).equals(rival)).toBe(true);
+  expect((await side(0.7)).equals(network), 'the other side has the map').toBe(false);
   expect(complaints).toEqual([]);
 });
 
@@ -146,13 +145,22 @@ test('garments chosen one right after the other are all worn', async () => {
 
 test('maps tell of fit, stretch and confidence, with a legend', async () => {
   const { page, complaints } = await site.visit('?pose=dance:40');
+  await plain(page);
+  await ask(page, (demo) => demo.finished(), null);
   await open(page, 'Maps');
+  const seen = new Set<string>();
+  const look = async () => {
+    await page.waitForTimeout(500);
+    seen.add((await page.screenshot({ clip: { x: 320, y: 60, width: 260, height: 440 } })).toString('base64'));
+  };
+  await look();
   for (const [map, most] of [['Fit', '80 mm and more'], ['Stretch', '20 % longer'], ['Confidence', '100 %']]) {
     await page.getByRole('radio', { name: map! }).check({ force: true });
     expect(await page.textContent('#legend-most')).toBe(most);
-    await page.waitForTimeout(300);
+    await look();
     await page.screenshot({ path: `${out}/map-${map!.toLowerCase()}.png` });
   }
+  expect(seen.size, 'fabric, fit, stretch and confidence look different').toBe(4);
   expect(await page.getByRole('figure').isVisible()).toBe(true);
   expect(complaints).toEqual([]);
 });
