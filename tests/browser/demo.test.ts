@@ -118,7 +118,7 @@ test('beside a map the rival wears its fabric', async () => {
   await open(page, 'Compare');
   await page.getByLabel('with plain skinning').check({ force: true });
   await expect.poll(() => page.getByText('Plain skinning', { exact: true }).isVisible(), patience).toBe(true);
-  /** The figure, without what the panel's shadow falls on: all of it on the rival's side of the line, or the network's. */
+  /** The figure, without what the panel's shadow falls on: all of it on one side of the line. */
   const side = async (line: number) => {
     await page.getByLabel('Where the network').fill(`${line}`);
     await page.waitForTimeout(500);
