@@ -6,10 +6,14 @@ interface Watch {
   /** Rejects when one of them throws. */
   thrown: Promise<never>;
   restore: (() => void)[];
-  users: number;
+  /** Work that has not ended. */
+  open: Set<object>;
 }
 
 const watches = new WeakMap<GPUDevice, Watch>();
+
+/** Milliseconds after which work that has not ended counts as broken by what was thrown. */
+const PATIENCE = 3000;
 
 /** Why WebGPU's module can be used no more, on this page: something threw right through it. */
 let broken: CtsnError | undefined;
@@ -17,16 +21,19 @@ let broken: CtsnError | undefined;
 /**
  * Runs work of WebGPU's module on a device. A call of the device that throws leaves the module in the middle of what it
  * did, and its promise open for ever. So for the length of the work every method of the device tells of what it throws.
- * Not for longer: the wrappers allocate.
+ * Not for longer: the wrappers allocate. A page may call the device meanwhile, and catch what that throws: then the
+ * work goes on, and ends.
  */
 export async function guarded<T>(device: GPUDevice, work: () => Promise<T>): Promise<T> {
   if (broken) throw broken;
   const watch = watches.get(device) ?? begin(device);
-  watch.users++;
+  const own = {};
+  watch.open.add(own);
   try {
     return await Promise.race([work(), watch.thrown]);
   } finally {
-    if (--watch.users === 0) {
+    watch.open.delete(own);
+    if (watch.open.size === 0) {
       watches.delete(device);
       for (const undo of watch.restore) undo();
     }
@@ -37,11 +44,12 @@ function begin(device: GPUDevice): Watch {
   let refuse!: (error: CtsnError) => void;
   const thrown = new Promise<never>((_, reject) => (refuse = reject));
   const tell = (name: string, cause: unknown) => {
-    broken = new CtsnError('refused', `the GPU device threw in ${name}(): ${String(cause)}`, { cause });
-    refuse(broken);
+    const error = new CtsnError('refused', `the GPU device threw in ${name}(): ${String(cause)}`, { cause });
+    const then = [...watch.open];
+    setTimeout(() => then.some((work) => watch.open.has(work)) && refuse((broken = error)), PATIENCE);
   };
   const restore = [device, device.queue].flatMap((target) => methodsOf(target).map((name) => wrap(target, name, tell)));
-  const watch = { thrown, restore, users: 0 };
+  const watch: Watch = { thrown, restore, open: new Set() };
   watches.set(device, watch);
   return watch;
 }

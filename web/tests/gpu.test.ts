@@ -91,6 +91,30 @@ test('a device whose call throws right through the module is given up, and the l
   vi.resetModules();
 });
 
+test("a call of the page's own that throws while a model is loading ends nothing", async () => {
+  const device = new FakeDevice('shared');
+  const createBuffer = device.createBuffer.bind(device);
+  const createTexture = () => {
+    throw new Error('of the page');
+  };
+  const thrown: unknown[] = [];
+  Object.assign(device, { createTexture });
+  device.createBuffer = (...list) => {
+    try {
+      (device as unknown as { createTexture: () => void }).createTexture();
+    } catch (error) {
+      thrown.push(error);
+    }
+    return createBuffer(...list);
+  };
+  vi.useFakeTimers({ toFake: ['setTimeout'] });
+  const model = await load(device);
+  vi.runAllTimers();
+  vi.useRealTimers();
+  expect([thrown.length > 0, model.backend, (await load(new FakeDevice('lent'))).backend]).toEqual([true, 'webgpu', 'webgpu']);
+  model.dispose();
+});
+
 test('methods of a device are its own again when nothing is being loaded', async () => {
   const device = new FakeDevice('lent');
   const both = await Promise.all([load(device), load(device)]);
