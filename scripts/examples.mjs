@@ -11,11 +11,9 @@ import { environments } from './environments.mjs';
 import { buildLibrary } from './library.mjs';
 import { look } from './look.mjs';
 import { withServer } from './page.mjs';
-import { at, main, run, say, Stop } from './step.mjs';
+import { at, ENDS, main, run, say, Stop } from './step.mjs';
 
 const scratch = at('out', 'examples');
-/** Signals that end a script from outside. */
-const ENDS = ['SIGINT', 'SIGTERM', 'SIGHUP'];
 
 /** Runs npm in a folder; what it says is shown only where it fails. */
 async function npm(cwd, ...args) {
@@ -64,11 +62,12 @@ async function serving(folder, script, body) {
   // A group of its own, because npm starts the server in a shell.
   const server = spawn('npm', ['run', script, '--', '--port', `${port}`], { cwd: folder, env, detached: true, stdio: 'ignore' });
   const address = `http://localhost:${port}/`;
-  // Ctrl-C does not reach that group.
+  // No signal reaches that group, not even Ctrl-C.
+  const signals = ['SIGINT', ...ENDS];
   const end = () => server.exitCode ?? server.signalCode ?? process.kill(-server.pid);
   const leave = () => process.exit(1);
   process.once('exit', end);
-  ENDS.forEach((signal) => process.once(signal, leave));
+  signals.forEach((signal) => process.once(signal, leave));
   try {
     for (const last = Date.now() + 60_000; !(await fetch(address).catch(() => undefined)); ) {
       if (server.exitCode !== null || Date.now() > last) throw new Stop(`npm run ${script} serves nothing in ${folder}`);
@@ -77,7 +76,7 @@ async function serving(folder, script, body) {
     return await body(address);
   } finally {
     process.off('exit', end);
-    ENDS.forEach((signal) => process.off(signal, leave));
+    signals.forEach((signal) => process.off(signal, leave));
     end();
   }
 }

@@ -19,8 +19,8 @@ export function say(text) {
 export class Stop extends Error {}
 
 const bins = at('node_modules', '.bin');
-/** Signals that end a script from outside. */
-const ENDS = ['SIGTERM', 'SIGHUP'];
+/** Signals that end a script from outside, besides the terminal's Ctrl-C, which all that it runs gets, too. */
+export const ENDS = ['SIGTERM', 'SIGHUP'];
 
 /**
  * Runs a program to its end and answers { status, output }; `output` is what it wrote when `capture` or `tee` is set.

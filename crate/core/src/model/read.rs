@@ -48,7 +48,7 @@ impl HostModel {
         let embedding = mlp(file, "embedding", 12 * joints, Some(m))?;
         let surroundings = surroundings::read(file, n)?;
         let layers = layers(file, surroundings.is_some())?;
-        let features = width(&layers, description.heads)?;
+        let features = features(&layers, description.heads)?;
         let vertex_mlp = mlp(file, "vertex", features, Some(k))?;
         let width = vertex_mlp
             .iter()
@@ -229,7 +229,7 @@ fn layers(file: &Tensors, surrounded: bool) -> Result<Vec<Layer<Vec<f32>>>> {
 }
 
 /// Features of every graph layer, which the heads share.
-fn width(layers: &[Layer<Vec<f32>>], heads: usize) -> Result<usize> {
+fn features(layers: &[Layer<Vec<f32>>], heads: usize) -> Result<usize> {
     let features = layers.first().map_or(0, |layer| layer.project.outputs / 4);
     if features == 0 || layers.iter().any(|layer| layer.project.outputs != 4 * features) {
         return Err(Error::NotModel("graph: wanted one layer or more, all of one width".to_owned()));

@@ -1,6 +1,6 @@
 //! The mesh stream is the dear part of the network, and what it adds changes slowly. So a cloth may have it computed in
 //! some frames only, and go from one residual to the next in between. This costs it a lag of as many frames. Measured
-//! on an unseen clip in docs/results/folds.md.
+//! on an unseen clip in docs/results/speed.md.
 
 /// What one cloth shows of the mesh stream between two frames that compute it. Made once for each cloth.
 #[derive(Clone, Debug)]
