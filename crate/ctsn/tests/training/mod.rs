@@ -37,13 +37,17 @@ fn a_model_and_its_learning_curve_come_out_the_same_twice() {
     let curve = String::from_utf8(read("out.curve.csv")).expect("text");
     let mut lines = curve.lines();
     let losses = LOSSES.iter().map(|term| format!("{}_loss", term.name));
-    let rest = ["validation_distance", "validation_normal", "learning_rate", "seconds"].map(str::to_owned);
+    let rest = ["validation_distance", "validation_normal", "validation_bending", "learning_rate", "seconds"]
+        .map(str::to_owned);
     let names: Vec<String> = ["epoch".to_owned()].into_iter().chain(losses).chain(rest).collect();
     assert_eq!(lines.next(), Some(names.join(",").as_str()));
     let rows: Vec<Vec<f64>> =
         lines.map(|line| line.split(',').map(|number| number.parse().expect("a number")).collect()).collect();
     assert!(
-        rows.len() == 3 && rows.iter().all(|row| row.len() == names.len() && row[names.len() - 4] > 0.0),
+        rows.len() == 3
+            && rows
+                .iter()
+                .all(|row| row.len() == names.len() && row[names.len() - 5..].iter().all(|value| *value > 0.0)),
         "{curve}"
     );
     assert!(!folder.path("out.checkpoint").exists());

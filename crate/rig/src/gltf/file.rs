@@ -11,7 +11,7 @@ use ::gltf::json::animation::VALID_PROPERTIES;
 use ::gltf::json::image::MimeType;
 use ::gltf::json::validation::Checked;
 use ::gltf::{Accessor, Document, Semantic};
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::collections::{BTreeMap, HashSet};
 use std::path::{Path, PathBuf};
 
@@ -42,6 +42,7 @@ impl File {
     pub fn parse(bytes: &[u8], folder: PathBuf) -> Read<File> {
         let Container { mut json, buffers } = Container::read(bytes, &folder)?;
         drop_channels_without_node(&mut json);
+        say_what_zeros_are(&mut json);
         let (pins, hidden, parts) = (pins(&json), hidden(&json), vrm::parts(&json));
         let mut json: Root = serde_json::from_value(json).map_err(|error| format!("not a glTF: {error}"))?;
         mend(&mut json)?;
@@ -135,6 +136,19 @@ fn drop_channels_without_node(json: &mut Value) {
     for animation in animations.into_iter().flatten() {
         if let Some(channels) = animation.get_mut("channels").and_then(Value::as_array_mut) {
             channels.retain(|it| it["target"].as_object().is_none_or(|target| target.contains_key("node")));
+        }
+    }
+}
+
+/// An accessor without bytes is all zeros (§3.6.2.1); the `gltf` crate demands some of it. A sparse part that changes
+/// no element says the same.
+fn say_what_zeros_are(json: &mut Value) {
+    let views = json["bufferViews"].as_array().map_or(0, Vec::len);
+    let accessors = json.get_mut("accessors").and_then(Value::as_array_mut).into_iter().flatten();
+    for accessor in accessors.filter_map(Value::as_object_mut).filter(|_| views > 0) {
+        if !accessor.contains_key("bufferView") && !accessor.contains_key("sparse") {
+            let nothing = json!({ "bufferView": 0, "componentType": 5121 });
+            accessor.insert("sparse".into(), json!({ "count": 0, "indices": nothing, "values": nothing }));
         }
     }
 }
@@ -234,7 +248,6 @@ fn number(bytes: &[u8], kind: DataType) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use serde_json::json;
 
     /// The components of the one accessor of a file whose buffer is 01 80 FF 7F 02 00 00 00.
     fn read(accessor: Value, wanted: Dimensions) -> Read<Vec<f64>> {
@@ -258,6 +271,12 @@ mod tests {
         assert_eq!(one(5122, false, 2), [-32767.0, 32767.0]);
         assert_eq!(one(5123, true, 2), [32769.0 / 65535.0, 32767.0 / 65535.0]);
         assert_eq!(one(5125, false, 2)[1], 2.0);
+    }
+
+    #[test]
+    fn an_accessor_without_bytes_is_zeros() {
+        let nothing = json!({ "componentType": 5126, "count": 2, "type": "VEC2" });
+        assert_eq!(read(nothing, Dimensions::Vec2).unwrap(), [0.0; 4]);
     }
 
     #[test]

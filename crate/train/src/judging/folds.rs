@@ -7,7 +7,7 @@ use super::judge::vertex_normals;
 use crate::Result;
 use crate::dataset::Setup;
 use crate::smoother::Smoother;
-use ctsn_cloth::simulate::Elastic;
+use ctsn_cloth::simulate::{Elastic, Hinge};
 use ctsn_core::topology::Graph;
 use ctsn_rig::mesh::Edges;
 use ctsn_rig::{numbers, vertices};
@@ -67,11 +67,35 @@ pub struct FrameFolds {
     bands: [f64; 3],
 }
 
+/// How much a cloth bends.
+pub(crate) struct Bending {
+    hinges: Vec<Hinge>,
+    /// Angle of each hinge in the garment as it was cut, radians.
+    cut: Vec<f64>,
+}
+
+impl Bending {
+    /// Of the cloth with these hinges, cut to the positions `cut` [n].
+    pub fn new(elastic: &Elastic, cut: &[DVec3]) -> Self {
+        let cut = elastic.hinges.iter().map(|hinge| hinge.angle(cut)).collect();
+        Self { hinges: elastic.hinges.clone(), cut }
+    }
+
+    /// Mean angle between neighbouring triangles at the positions `x` [n], less that of the garment as it was cut,
+    /// radians.
+    pub fn of(&self, x: &[DVec3]) -> f64 {
+        let bend = |(hinge, cut): (&Hinge, &f64)| {
+            let turned = (hinge.angle(x) - cut).abs();
+            turned.min(std::f64::consts::TAU - turned)
+        };
+        self.hinges.iter().zip(&self.cut).map(bend).sum::<f64>() / self.cut.len().max(1) as f64
+    }
+}
+
 /// What folds are measured with.
 pub(super) struct FoldJudge {
     elastic: Elastic,
-    /// Angle of each hinge in the garment as it was cut, radians.
-    cut: Vec<f64>,
+    bending: Bending,
     /// Each edge with its length in the garment as it was cut, metres.
     edges: Vec<([usize; 2], f64)>,
     mean_edge: f64,
@@ -93,15 +117,14 @@ impl FoldJudge {
     pub fn new(setup: &Setup) -> Result<Self> {
         let cut = vertices(&setup.garment);
         let elastic = setup.elastic()?;
-        let angles = elastic.hinges.iter().map(|hinge| hinge.angle(&cut)).collect();
         let found = Edges::new(setup.triangles.as_chunks().0);
         let ends = found.iter().map(|(edge, _)| edge.map(|i| i as usize));
         let edges: Vec<_> = ends.map(|[i, j]| ([i, j], cut[i].distance(cut[j]))).collect();
         let mut is_inner = vec![true; cut.len()];
         found.boundary().for_each(|(edge, _)| edge.iter().for_each(|i| is_inner[*i as usize] = false));
         Ok(Self {
+            bending: Bending::new(&elastic, &cut),
             elastic,
-            cut: angles,
             mean_edge: edges.iter().map(|(_, length)| length).sum::<f64>() / edges.len().max(1) as f64,
             edges,
             rings: Graph::new(cut.len(), &setup.triangles),
@@ -148,11 +171,6 @@ impl FoldJudge {
 
     /// Bending, strain and energy.
     fn elasticity(&self, x: &[DVec3]) -> State {
-        let bend = |(hinge, cut): (&ctsn_cloth::simulate::Hinge, &f64)| {
-            let turned = (hinge.angle(x) - cut).abs();
-            turned.min(std::f64::consts::TAU - turned)
-        };
-        let hinges = self.elastic.hinges.iter().zip(&self.cut);
         let strain = |([i, j], length): &([usize; 2], f64)| (x[*i].distance(x[*j]) / length - 1.0).abs();
         let (mut stretch, mut shear, mut area) = (0.0, 0.0, 0.0);
         for triangle in &self.elastic.triangles {
@@ -163,7 +181,7 @@ impl FoldJudge {
         }
         let mut gradient = vec![DVec3::ZERO; x.len()];
         State {
-            bending: hinges.map(bend).sum::<f64>() / self.cut.len().max(1) as f64,
+            bending: self.bending.of(x),
             strain: self.edges.iter().map(strain).sum::<f64>() / self.edges.len().max(1) as f64,
             stretch: stretch / area,
             shear: shear / area,

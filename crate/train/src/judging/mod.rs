@@ -15,6 +15,7 @@ use ctsn_core::model::HostModel;
 use ctsn_core::{Predictor, Streams};
 use ctsn_rig::{strongest, vertices};
 pub use errors::{Errors, Statistic};
+pub(crate) use folds::Bending;
 pub use folds::{FoldErrors, FrameFolds};
 use glam::DVec3;
 pub use judge::{

@@ -5,16 +5,26 @@ use super::distance::distance;
 use super::{Loss, Prediction, Scene, Term};
 use crate::smoother::Smoother;
 
-pub(super) const CURVATURE: Term = Term {
+/// Power of the bending ratio by which an epoch changes the emphasis, and the greatest emphasis.
+const GAIN: i32 = 2;
+const MOST: f32 = 4.0;
+
+pub(crate) const CURVATURE: Term = Term {
     name: "curvature",
     title: "curvature, poses learned from",
     unit: "m",
     weight: 2.0,
-    constants: &[],
+    constants: &[GAIN as f32, MOST],
     simulated: &[Prediction::Whole],
     unsimulated: &[],
     new: |Scene { setup, .. }| Ok(Some(Box::new(Curvature(Smoother::new(setup.template.len() / 3, &setup.triangles))))),
 };
+
+/// How much more than its weight curvature counts, after epochs that watched such bending ratios: more and more while
+/// predictions bend more than the truth, and never less than its weight. What it brings: docs/decisions/training.md.
+pub(crate) fn emphasis(bending: impl Iterator<Item = f32>) -> f32 {
+    bending.fold(1.0, |emphasis, bending| (emphasis * bending.powi(GAIN)).clamp(1.0, MOST))
+}
 
 pub(super) struct Curvature(pub Smoother);
 
@@ -34,5 +44,19 @@ impl Loss for Curvature {
             .zip(ours.iter().zip(smooth))
             .for_each(|(gradient, (ours, smooth))| *gradient += ours - smooth);
         value
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn crumpled_predictions_make_curvature_count_more_and_smooth_ones_never_less() {
+        let after = |bending: &[f32]| emphasis(bending.iter().copied());
+        assert_eq!([after(&[]), after(&[0.5, 0.9]), after(&[1.5])], [1.0, 1.0, 2.25]);
+        assert_eq!([after(&[3.0; 9]), after(&[3.0, 0.75])], [MOST, 2.25]);
+        // Not a debt: what was smooth for long counts more as soon as it crumples.
+        assert_eq!(after(&[0.2, 0.2, 1.5]), 2.25);
     }
 }

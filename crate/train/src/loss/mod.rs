@@ -22,7 +22,9 @@ use ctsn_core::pose::BodyFrame;
 
 /// Every loss of a training on simulated poses.
 pub const LOSSES: &[Term] =
-    &[coarse::COARSE, start::START, fine::FINE, curvature::CURVATURE, penetration::PENETRATION, energy::TENSION];
+    &[coarse::COARSE, start::START, fine::FINE, CURVATURE, penetration::PENETRATION, energy::TENSION];
+
+pub(crate) use curvature::{CURVATURE, emphasis};
 
 /// Every loss of a training without truth: the sum is what a simulation minimises.
 pub const SELF_SUPERVISED: &[Term] = &[energy::ENERGY, contact::CONTACT];
@@ -156,6 +158,11 @@ impl Losses {
     /// Shows them a pose.
     pub fn pose(&mut self, body_frame: &BodyFrame) {
         self.0.iter_mut().for_each(|(_, loss)| loss.pose(body_frame));
+    }
+
+    /// Makes the loss of that name, if it is among them, count so much.
+    pub fn weigh(&mut self, name: &str, weight: f32) {
+        self.0.iter_mut().filter(|(term, _)| term.name == name).for_each(|(term, _)| term.weight = weight);
     }
 
     /// Each with its number and what the list tells of it.

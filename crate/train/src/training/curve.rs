@@ -1,5 +1,6 @@
 //! The learning curve: one row per epoch, as CSV beside the model. Columns: `epoch`, `NAME_loss` of each loss in its
-//! unit, `validation_distance` (metres), `validation_normal` (degrees), `learning_rate`, `seconds`.
+//! unit, `validation_distance` (metres), `validation_normal` (degrees), `validation_bending` (a ratio; empty where nothing
+//! bends), `learning_rate`, `seconds`.
 
 use crate::{Error, Result};
 use ctsn_rig::file;
@@ -17,11 +18,16 @@ pub struct Row {
     pub distance: f32,
     /// E_norm on the validation slice, degrees.
     pub normal: f32,
+    /// How much predictions of the validation slice bend, over how much its truth does; `None` where that does not, and
+    /// in curves of older versions.
+    pub bending: Option<f32>,
     /// Adam's learning rate at the end of the epoch.
     pub rate: f32,
     /// Seconds of training so far.
     pub seconds: f64,
 }
+
+const BENDING: &str = "validation_bending";
 
 /// Ends the name of a loss's column.
 const LOSS: &str = "_loss";
@@ -42,13 +48,15 @@ impl Row {
 pub(super) fn write(path: &Path, rows: &[Row]) -> Result<()> {
     let losses = rows.first().map_or(&[][..], |row| &row.losses);
     let names = losses.iter().map(|(name, _)| format!("{name}{LOSS}"));
-    let after = ["validation_distance", "validation_normal", "learning_rate", "seconds"].map(str::to_owned);
+    let after = ["validation_distance", "validation_normal", BENDING, "learning_rate", "seconds"].map(str::to_owned);
     let mut table = csv::Writer::from_writer(Vec::new());
     let mut line = |cells: Vec<String>| table.write_record(cells).map_err(|error| wrong(path, error.to_string()));
     line(["epoch".to_owned()].into_iter().chain(names).chain(after).collect())?;
-    for Row { epoch, losses, distance, normal, rate, seconds } in rows {
-        let values = losses.iter().map(|(_, value)| value).chain([distance, normal, rate]).map(f32::to_string);
-        line([epoch.to_string()].into_iter().chain(values).chain([format!("{seconds:.1}")]).collect())?;
+    for Row { epoch, losses, distance, normal, bending, rate, seconds } in rows {
+        let values = losses.iter().map(|(_, value)| value).chain([distance, normal]).map(f32::to_string);
+        let bending = bending.map_or_else(String::new, |bending| bending.to_string());
+        let after = [bending, rate.to_string(), format!("{seconds:.1}")];
+        line([epoch.to_string()].into_iter().chain(values).chain(after).collect())?;
     }
     let bytes = table.into_inner().map_err(|error| wrong(path, error.to_string()))?;
     file::write(path, &bytes)
@@ -69,6 +77,7 @@ pub fn read(path: &Path) -> Result<Vec<Row>> {
     let [epoch, seconds] = [place("epoch")?, place("seconds")?];
     let [distance, normal, rate] =
         [place("validation_distance")?, place("validation_normal")?, place("learning_rate")?];
+    let bending = heads.iter().position(|head| head == BENDING);
     let row = |record: csv::Result<csv::StringRecord>| {
         let record = record.map_err(|error| wrong(path, error.to_string()))?;
         let float = |i: usize| number::<f32>(path, &record, i);
@@ -78,6 +87,7 @@ pub fn read(path: &Path) -> Result<Vec<Row>> {
             losses: losses.iter().map(loss).collect::<Result<_>>()?,
             distance: float(distance)?,
             normal: float(normal)?,
+            bending: bending.filter(|cell| !record[*cell].is_empty()).map(float).transpose()?,
             rate: float(rate)?,
             seconds: number(path, &record, seconds)?,
         })
@@ -104,8 +114,9 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("curve.csv");
         let losses = vec![("bend, J".to_owned(), -1.5), ("fine".to_owned(), 0.015_678_9)];
-        let first = Row { epoch: 1, losses, distance: 0.02, normal: 11.25, rate: 1e-3, seconds: 0.1 };
-        let rows = [first.clone(), Row { epoch: 2, seconds: 12.3, ..first }];
+        let first =
+            Row { epoch: 1, losses, distance: 0.02, normal: 11.25, bending: Some(1.25), rate: 1e-3, seconds: 0.1 };
+        let rows = [first.clone(), Row { epoch: 2, bending: None, seconds: 12.3, ..first }];
         write(&path, &rows).unwrap();
         assert_eq!(read(&path).unwrap(), rows);
         let text = std::fs::read_to_string(&path).unwrap();

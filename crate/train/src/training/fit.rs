@@ -1,14 +1,13 @@
 //! Training from the first epoch to the last: validation after every epoch, the best parameters kept, checkpoints, and
 //! the reasons to stop before the end: no gain, no time left, divergence.
 
-use super::item::Item;
-use super::step::Worker;
+use super::adam::schedule;
+use super::watch::Watched;
 use super::{Trainer, curve};
 use crate::dataset::Sample;
 use crate::loss::{magnitude, sum, told};
 use crate::{Error, Result};
 use curve::Row;
-use rayon::prelude::*;
 use std::path::PathBuf;
 
 /// Epochs between checkpoints.
@@ -60,11 +59,14 @@ impl Trainer {
     /// One epoch and its validation, noted in the curve.
     pub(super) fn round(&mut self, validation: &[&Sample]) -> Result<Row> {
         if self.untrained.is_none() && !validation.is_empty() {
-            self.untrained = Some(self.validate(validation)?.0);
+            self.untrained = Some(self.validate(validation)?.distance);
         }
+        self.emphasise();
         let losses = self.epoch(|_, _, _| {})?;
-        let (distance, normal) =
-            if validation.is_empty() { (sum(&self.terms, &losses), 0.0) } else { self.validate(validation)? };
+        let Watched { distance, normal, bending } = match validation {
+            [] => Watched { distance: sum(&self.terms, &losses), normal: 0.0, bending: None },
+            _ => self.validate(validation)?,
+        };
         let first = self.first.unwrap_or(f32::INFINITY);
         if magnitude(&self.terms, &losses) > EXPLOSION * first || !distance.is_finite() {
             let told = told(&self.terms, &losses);
@@ -76,7 +78,7 @@ impl Trainer {
         }
         let rate = self.rate(self.epoch * self.steps());
         let losses = self.terms.iter().map(|term| term.name.to_owned()).zip(losses).collect();
-        let row = Row { epoch: self.epoch, losses, distance, normal, rate, seconds: self.seconds() };
+        let row = Row { epoch: self.epoch, losses, distance, normal, bending, rate, seconds: self.seconds() };
         if self.best_epoch().is_none_or(|best| distance < best.distance) {
             self.best = self.parameters.each().map(|(_, values)| values.to_vec()).collect();
         }
@@ -84,19 +86,21 @@ impl Trainer {
         Ok(row)
     }
 
-    /// Mean E_dist (metres) and E_norm (degrees) of the model as it stands, on `samples`. network.md §7.
-    pub fn validate(&mut self, samples: &[&Sample]) -> Result<(f32, f32)> {
-        let (recording, model, workers) = (&self.recording, &self.model, self.workers.len());
-        let shared = &self.parameters.shared;
-        let run = |(number, worker): (usize, &mut Worker)| {
-            let compare = |sample: &&Sample| Item::compare(model, sample, recording, shared, &mut worker.lane);
-            samples.iter().skip(number).step_by(workers).map(compare).collect()
-        };
-        let errors = self.workers.par_iter_mut().enumerate().map(run).collect::<Result<Vec<Vec<(f64, f64)>>>>()?;
-        // Summed in the samples' order, whatever the number of threads.
-        let ordered = || (0..samples.len()).map(|i| errors[i % workers][i / workers]);
-        let mean = |total: f64| (total / samples.len() as f64) as f32;
-        Ok((mean(ordered().map(|error| error.0).sum()), mean(ordered().map(|error| error.1).sum())))
+    /// Share of the training that is over: of its time where that is given, else of its epochs.
+    pub fn progress(&self) -> f64 {
+        self.progress_at(self.epoch * self.steps())
+    }
+
+    fn progress_at(&self, step: usize) -> f64 {
+        match self.settings.budget {
+            Some(budget) => self.seconds() / budget.as_secs_f64(),
+            None => step as f64 / (self.settings.epochs() * self.steps()).max(1) as f64,
+        }
+    }
+
+    /// Learning rate of optimisation step `step`.
+    pub(super) fn rate(&self, step: usize) -> f32 {
+        schedule(self.settings.rate, self.progress_at(step) as f32)
     }
 
     /// The epoch with the least E_dist on the validation slice.

@@ -3,12 +3,12 @@
 use super::recording::Recording;
 use super::tape::{Lane, Shared};
 use crate::dataset::Sample;
-use crate::judging::differences;
 use crate::loss::{Known, Losses, Prediction};
 use crate::{Error, Result};
 use ctsn_core::model::HostModel;
 use ctsn_core::pose::BodyFrame;
 use ctsn_rig::vertices;
+use glam::DVec3;
 
 /// One pose as the tape sees it.
 pub(crate) struct Item {
@@ -64,18 +64,17 @@ impl Item {
         values
     }
 
-    /// Distance of the prediction from a sample's truth (metres) and angle between their normals (degrees).
-    pub(super) fn compare(
+    /// The whole prediction for a sample, and the sample's truth [n].
+    pub(super) fn compared(
         model: &HostModel,
         sample: &Sample,
         recording: &Recording,
         shared: &Shared,
         lane: &mut Lane,
-    ) -> Result<(f64, f64)> {
+    ) -> Result<[Vec<DVec3>; 2]> {
         check(model, sample)?;
         Self::posed(model, &sample.joints)?.predict(recording, shared, lane);
-        let predicted = vertices(lane.value(shared, recording.prediction(Prediction::Whole)));
-        Ok(differences(&predicted, &vertices(&sample.truth), &model.triangles))
+        Ok([lane.value(shared, recording.prediction(Prediction::Whole)), &sample.truth].map(vertices))
     }
 
     fn predict(&self, recording: &Recording, shared: &Shared, lane: &mut Lane) {

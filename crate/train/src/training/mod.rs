@@ -24,15 +24,17 @@ pub(crate) mod tape;
 mod tests;
 mod unsimulated;
 mod variant;
+mod watch;
 mod weights;
 
 use crate::dataset::{Sample, Setup, digest, fingerprint};
+use crate::judging::Bending;
 use crate::loss::{Known, LOSSES, Losses, SELF_SUPERVISED, Scene, TEACHER, Term, magnitude, told};
 use crate::{Error, Result};
-use adam::schedule;
 use coarse::Coarse;
 use ctsn_core::model::{HostModel, Storage};
 use ctsn_core::network::DeviceModel;
+use ctsn_rig::vertices;
 pub use curve::Row;
 use duration::duration;
 pub use fit::{End, Files};
@@ -113,6 +115,7 @@ pub struct Trainer {
     recording: Recording,
     /// None where no loss reads what the network makes of such poses, or there is nothing to make them of.
     unsimulated: Option<Unsimulated>,
+    bending: Bending,
     /// None where no pose was simulated coarsely.
     coarse: Option<Coarse>,
     parameters: Parameters,
@@ -190,6 +193,7 @@ impl Trainer {
             items,
             recording,
             unsimulated,
+            bending: Bending::new(&setup.elastic()?, &vertices(&setup.garment)),
             coarse: None,
             parameters,
             hypernetwork,
@@ -248,23 +252,6 @@ impl Trainer {
     /// Seconds of training so far, in this process and before.
     pub fn seconds(&self) -> f64 {
         self.started.1 + self.started.0.elapsed().as_secs_f64()
-    }
-
-    /// Share of the training that is over: of its time where that is given, else of its epochs.
-    pub fn progress(&self) -> f64 {
-        self.progress_at(self.epoch * self.steps())
-    }
-
-    fn progress_at(&self, step: usize) -> f64 {
-        match self.settings.budget {
-            Some(budget) => self.seconds() / budget.as_secs_f64(),
-            None => step as f64 / (self.settings.epochs() * self.steps()).max(1) as f64,
-        }
-    }
-
-    /// Learning rate of optimisation step `step`.
-    fn rate(&self, step: usize) -> f32 {
-        schedule(self.settings.rate, self.progress_at(step) as f32)
     }
 
     /// The model as trained so far.

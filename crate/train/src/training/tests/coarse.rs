@@ -2,6 +2,7 @@
 //! they are asked for.
 
 use super::*;
+use crate::judging::differences;
 use crate::synthetic;
 
 /// A tube, poses to learn from, and others whose cloth hangs 50 mm lower.
@@ -31,7 +32,10 @@ fn coarse_cloth_teaches_the_skeleton_stream_alone() {
     let error = |trained: &HostModel| {
         let (recording, shared, _) = Recording::new(trained, settings.variant, Streams::Skeleton);
         let mut lane = recording.lane(&shared).unwrap();
-        let mut one = |sample: &&Sample| Item::compare(trained, sample, &recording, &shared, &mut lane).unwrap().0;
+        let mut one = |sample: &&Sample| {
+            let [predicted, truth] = Item::compared(trained, sample, &recording, &shared, &mut lane).unwrap();
+            differences(&predicted, &truth, &trained.triangles).0
+        };
         coarse.iter().map(&mut one).sum::<f64>() / coarse.len() as f64
     };
     let [without, with] = [false, true].map(|taught| {

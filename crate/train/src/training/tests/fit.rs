@@ -4,6 +4,7 @@
 use super::*;
 use crate::dataset::Split;
 use crate::synthetic;
+use crate::training::adam::schedule;
 use ctsn_core::model::Storage;
 use tempfile::TempDir;
 
@@ -84,7 +85,8 @@ fn the_best_epoch_is_kept_and_no_gain_ends_the_training() {
     for (name, values) in model.parameters().into_iter().map(|(name, _)| name).zip(best) {
         *trainer.parameters.get_mut(&name).unwrap() = values;
     }
-    assert_eq!(trainer.validate(&validation).unwrap(), (row.distance, row.normal));
+    let watched = trainer.validate(&validation).unwrap();
+    assert_eq!((watched.distance, watched.normal, watched.bending), (row.distance, row.normal, row.bending));
 }
 
 #[test]
@@ -145,7 +147,7 @@ fn an_ablation_learns_what_is_left() {
         // The trained loss is what the predictor makes of the file.
         let read = HostModel::parse(&after.to_bytes(Storage::F32)).unwrap();
         assert_eq!(read.mesh_stream, part != Part::Mesh);
-        let distance = trainer.validate(&train).unwrap().0;
+        let distance = trainer.validate(&train).unwrap().distance;
         let mut predictor = ctsn_core::Predictor::from_model(read, ctsn_core::cpu::Level::new());
         let mut total = 0.0;
         for sample in &train {
