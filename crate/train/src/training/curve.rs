@@ -1,6 +1,6 @@
 //! The learning curve: one row per epoch, as CSV beside the model. Columns: `epoch`, `NAME_loss` of each loss in its
-//! unit, `validation_distance` (metres), `validation_normal` (degrees), `validation_bending` (a ratio; empty where nothing
-//! bends), `learning_rate`, `seconds`.
+//! unit, `validation_distance` (metres), `validation_normal` (degrees), `validation_bending` (a ratio; empty where
+//! nothing bends), `learning_rate`, `seconds`.
 
 use crate::{Error, Result};
 use ctsn_rig::file;
