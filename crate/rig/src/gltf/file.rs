@@ -140,8 +140,8 @@ fn drop_channels_without_node(json: &mut Value) {
     }
 }
 
-/// An accessor without bytes is all zeros (§3.6.2.1); the `gltf` crate demands some of it. A sparse part that changes
-/// no element says the same.
+/// An accessor without bytes is all zeros (glTF 2.0 §5.1.1); the `gltf` crate demands some. A sparse part that
+/// changes no element says the same.
 fn say_what_zeros_are(json: &mut Value) {
     let views = json["bufferViews"].as_array().map_or(0, Vec::len);
     let accessors = json.get_mut("accessors").and_then(Value::as_array_mut).into_iter().flatten();
