@@ -36,7 +36,7 @@ mod tests;
 pub use cloth::{FINE, is_fine};
 pub use coarse::Embedding;
 pub use distance::{BodyDistance, felt};
-pub use elastic::{Elastic, Hinge, Membrane, Triangle};
+pub use elastic::{Elastic, Hinge, Membrane, Triangle, Wrinkling};
 pub use fitted::fitted;
 pub use material::{Fabric, GRAVITY, Material};
 pub use outcome::{Outcome, Status};

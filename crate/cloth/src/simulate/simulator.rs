@@ -7,6 +7,7 @@ use super::coarse::{COARSE, COARSER, Coarse};
 use super::collider::Collider;
 use super::cover::{Cover, SLACK};
 use super::distance::BodyDistance;
+use super::elastic::{Membrane, Wrinkling};
 use super::grain::warp;
 use super::level::Level;
 use super::material::Material;
@@ -59,7 +60,9 @@ impl Simulator {
         let fine = level(&garment.mesh, &warp, &settings.attached)?;
         let thinned = |vertices| {
             let coarse = Coarse::new(&garment.mesh, &warp, vertices);
-            let level = level(&coarse.embedding.mesh, &coarse.warp, &coarse.restrict_vertices(&settings.attached))?;
+            let attached = coarse.restrict_vertices(&settings.attached);
+            let mut level = level(&coarse.embedding.mesh, &coarse.warp, &attached)?;
+            level.cloth.elastic.membrane = Membrane::Wrinkling(Wrinkling::new(&material));
             Ok::<_, Error>((coarse, level))
         };
         let of = |vertices| fine.cloth.is_fine().then(|| thinned(vertices)).transpose();

@@ -1,23 +1,30 @@
-//! Orthotropic Saint Venant–Kirchhoff membrane: `A ψ(F)`, `ψ = ½ G:C:G`, `G = (FᵀF - I)/2` along weft (1) and warp (2).
-//! simulation.md §2.2. The Hessian is `BᵀCB` plus the geometric part; with the stress clamped to tension it is never
+//! Membrane elements: `A ψ(F)` of the Green strain `G = (FᵀF - I)/2` along weft (1) and warp (2). simulation.md §2.2.
+//! The Hessian is `BᵀCB`, `C = ∂²ψ/∂G²`, plus the geometric part; with the stress clamped to tension it is never
 //! indefinite.
 
 use glam::{DMat3, DVec2, DVec3};
 
+use super::wrinkling::Wrinkling;
 use crate::simulate::material::Material;
 use crate::simulate::matrix::outer;
 
-/// In-plane stiffness along the threads, N/m: `S₁₁ = C₁₁G₁₁ + C₁₂G₂₂`, `S₂₂ = C₁₂G₁₁ + C₂₂G₂₂`, `S₁₂ = 2 C₃₃G₁₂`.
+/// What in-plane strain costs.
 #[derive(Clone, Copy, Debug)]
-pub struct Membrane {
-    /// `C₁₁`, of the weft.
-    pub c11: f64,
-    /// `C₂₂`, of the warp.
-    pub c22: f64,
-    /// `C₁₂`, between the two.
-    pub c12: f64,
-    /// `C₃₃`, shear.
-    pub c33: f64,
+pub enum Membrane {
+    /// Saint Venant–Kirchhoff, `ψ = ½ G:C:G`, in N/m: `S₁₁ = C₁₁G₁₁ + C₁₂G₂₂`, `S₂₂ = C₁₂G₁₁ + C₂₂G₂₂`,
+    /// `S₁₂ = 2 C₃₃G₁₂`.
+    Orthotropic {
+        /// `C₁₁`, of the weft.
+        c11: f64,
+        /// `C₂₂`, of the warp.
+        c22: f64,
+        /// `C₁₂`, between the two.
+        c12: f64,
+        /// `C₃₃`, shear.
+        c33: f64,
+    },
+    /// Of a mesh too coarse to fold as its cloth does.
+    Wrinkling(Wrinkling),
 }
 
 impl Membrane {
@@ -25,7 +32,27 @@ impl Membrane {
     pub fn new(material: &Material) -> Self {
         let Material { warp, weft, shear, poisson, .. } = *material;
         let free = 1.0 - poisson * poisson;
-        Self { c11: weft / free, c22: warp / free, c12: poisson * (warp * weft).sqrt() / free, c33: shear }
+        let c12 = poisson * (warp * weft).sqrt() / free;
+        Self::Orthotropic { c11: weft / free, c22: warp / free, c12, c33: shear }
+    }
+
+    /// Energy per area, J/m², and second Piola stress (s11, s22, s12), N/m, at the strain (G11, G22, G12).
+    fn response(&self, strain @ [g11, g22, g12]: [f64; 3]) -> (f64, [f64; 3]) {
+        match *self {
+            Self::Orthotropic { c11, c22, c12, c33 } => {
+                let stress @ [s11, s22, s12] = [c11 * g11 + c12 * g22, c12 * g11 + c22 * g22, 2.0 * c33 * g12];
+                (0.5 * (s11 * g11 + s22 * g22) + s12 * g12, stress)
+            }
+            Self::Wrinkling(law) => law.response(strain),
+        }
+    }
+
+    /// Derivatives of the stress (s11, s22, s12) by (G11, G22, 2 G12), N/m.
+    fn tangent(&self, strain: [f64; 3]) -> [[f64; 3]; 3] {
+        match *self {
+            Self::Orthotropic { c11, c22, c12, c33 } => [[c11, c12, 0.0], [c12, c22, 0.0], [0.0, 0.0, c33]],
+            Self::Wrinkling(law) => law.tangent(strain),
+        }
     }
 }
 
@@ -38,14 +65,6 @@ pub struct Triangle {
     pub gradients: [DVec2; 3],
     /// Rest area, m².
     pub area: f64,
-}
-
-/// Deformation gradient columns and second Piola stress of a triangle.
-struct Strain {
-    columns: [DVec3; 2],
-    /// s11, s22, s12 in N/m.
-    stress: [f64; 3],
-    energy: f64,
 }
 
 impl Triangle {
@@ -87,18 +106,9 @@ impl Triangle {
         [(mean + radius).sqrt(), (mean - radius).max(0.0).sqrt()]
     }
 
-    fn strain(&self, membrane: &Membrane, x: &[DVec3]) -> Strain {
-        let Membrane { c11, c22, c12, c33 } = *membrane;
-        let columns @ [f1, f2] = self.deformation(x);
-        let (g11, g22, g12) = (0.5 * (f1.length_squared() - 1.0), 0.5 * (f2.length_squared() - 1.0), 0.5 * f1.dot(f2));
-        let stress = [c11 * g11 + c12 * g22, c12 * g11 + c22 * g22, 2.0 * c33 * g12];
-        let energy = self.area * (0.5 * (stress[0] * g11 + stress[1] * g22) + stress[2] * g12);
-        Strain { columns, stress, energy }
-    }
-
     /// Energy at the positions `x` [n], joules.
     pub fn energy(&self, membrane: &Membrane, x: &[DVec3]) -> f64 {
-        self.strain(membrane, x).energy
+        self.area * membrane.response(strain(self.deformation(x))).0
     }
 
     /// Gradient of the energy at `x` [n] per corner, newtons: the forces are its negative.
@@ -115,17 +125,19 @@ impl Triangle {
         exact: bool,
         mut block: impl FnMut(usize, usize, DMat3),
     ) -> [DVec3; 3] {
-        let Strain { columns: [f1, f2], stress: [s11, s22, s12], .. } = self.strain(membrane, x);
+        let columns @ [f1, f2] = self.deformation(x);
+        let strain = strain(columns);
+        let stress @ [s11, s22, s12] = membrane.response(strain).1;
         let (p1, p2) = ((f1 * s11 + f2 * s12) * self.area, (f1 * s12 + f2 * s22) * self.area);
-        let Membrane { c11, c22, c12, c33 } = *membrane;
-        let [t11, t22, t12] = if exact { [s11, s22, s12] } else { tension([s11, s22, s12]) };
+        let tangent = membrane.tangent(strain);
+        let [t11, t22, t12] = if exact { stress } else { tension(stress) };
         let g = self.gradients;
         let b = g.map(|g| [f1 * g.x, f2 * g.y, f1 * g.y + f2 * g.x]);
         for i in 0..3 {
             for j in 0..=i {
                 let geometric = g[i].x * (t11 * g[j].x + t12 * g[j].y) + g[i].y * (t12 * g[j].x + t22 * g[j].y);
-                let c = [b[j][0] * c11 + b[j][1] * c12, b[j][0] * c12 + b[j][1] * c22, b[j][2] * c33];
-                let material = outer(b[i][0], c[0]) + outer(b[i][1], c[1]) + outer(b[i][2], c[2]);
+                let [c1, c2, c3] = tangent.map(|row| b[j][0] * row[0] + b[j][1] * row[1] + b[j][2] * row[2]);
+                let material = outer(b[i][0], c1) + outer(b[i][1], c2) + outer(b[i][2], c3);
                 block(i, j, (material + DMat3::from_diagonal(DVec3::splat(geometric))) * self.area);
             }
         }
@@ -133,20 +145,36 @@ impl Triangle {
     }
 }
 
+/// Green strain (G11, G22, G12) of the columns of `F`.
+fn strain([f1, f2]: [DVec3; 2]) -> [f64; 3] {
+    [0.5 * (f1.length_squared() - 1.0), 0.5 * (f2.length_squared() - 1.0), 0.5 * f1.dot(f2)]
+}
+
 /// The tensile part of a symmetric 2×2 stress (s11, s22, s12): negative eigenvalues set to zero.
-fn tension([s11, s22, s12]: [f64; 3]) -> [f64; 3] {
-    let mean = 0.5 * (s11 + s22);
-    let half = 0.5 * (s11 - s22);
-    let radius = (half * half + s12 * s12).sqrt();
-    let (high, low) = (mean + radius, mean - radius);
+fn tension(stress: [f64; 3]) -> [f64; 3] {
+    let Principal { values: [high, low], axis: v } = Principal::of(stress);
     if low >= 0.0 {
-        return [s11, s22, s12];
+        return stress;
     }
     if high <= 0.0 {
         return [0.0; 3];
     }
-    // Eigenvector of `high`: the better conditioned of the two rows.
-    let v = if half >= 0.0 { DVec2::new(half + radius, s12) } else { DVec2::new(s12, radius - half) };
-    let v = v.normalize_or(DVec2::X);
     [high * v.x * v.x, high * v.y * v.y, high * v.x * v.y]
+}
+
+/// Eigenvalues of a symmetric 2×2 matrix, the greater first, and the unit eigenvector of that one.
+pub(super) struct Principal {
+    pub values: [f64; 2],
+    pub axis: DVec2,
+}
+
+impl Principal {
+    /// Of the entries 11, 22, 12.
+    pub fn of([a, b, c]: [f64; 3]) -> Self {
+        let (mean, half) = (0.5 * (a + b), 0.5 * (a - b));
+        let radius = (half * half + c * c).sqrt();
+        // The better conditioned of the two rows.
+        let v = if half >= 0.0 { DVec2::new(half + radius, c) } else { DVec2::new(c, radius - half) };
+        Self { values: [mean + radius, mean - radius], axis: v.normalize_or(DVec2::X) }
+    }
 }

@@ -4,12 +4,14 @@
 
 mod bending;
 mod membrane;
+mod wrinkling;
 
 use glam::DVec3;
 
 pub use self::bending::Hinge;
 use self::bending::angle;
 pub use self::membrane::{Membrane, Triangle};
+pub use self::wrinkling::Wrinkling;
 use super::grain::warp;
 use super::material::{GRAVITY, Material};
 use crate::{Error, Result};

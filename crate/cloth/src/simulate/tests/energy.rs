@@ -5,6 +5,7 @@ use glam::{DMat3, DVec3};
 use super::scene::{down, strip};
 use crate::simulate::cloth::Cloth;
 use crate::simulate::contact::{Contact, Pin, SLIP};
+use crate::simulate::elastic::{Membrane, Wrinkling};
 use crate::simulate::material::Material;
 
 /// Largest difference of `gradient` from central differences of `energy`, over the largest entry.
@@ -31,16 +32,22 @@ fn shaken(x: &[DVec3], size: f64) -> Vec<DVec3> {
     x.iter().enumerate().map(|(i, p)| *p + DVec3::new(wave(i, 12.9), wave(i, 7.3), wave(i, 4.1))).collect()
 }
 
+/// Of cotton, and of cotton that wrinkles below its mesh.
+fn membranes() -> [Membrane; 2] {
+    let cotton = Material::default();
+    [Membrane::new(&cotton), Membrane::Wrinkling(Wrinkling::new(&cotton))]
+}
+
 #[test]
 fn membrane_and_bending_gradients() {
     let mesh = strip(3, 2, 0.02);
     let cloth = Cloth::new(&mesh, &down(&mesh), &Material::default(), 0.5).unwrap();
     let x = shaken(&mesh.positions, 0.004);
-    for triangle in &cloth.elastic.triangles {
+    for (membrane, triangle) in membranes().iter().flat_map(|m| cloth.elastic.triangles.iter().map(move |t| (m, t))) {
         let mut gradient = vec![DVec3::ZERO; x.len()];
-        let forces = triangle.derivatives(&cloth.elastic.membrane, &x, false, |_, _, _| {});
+        let forces = triangle.derivatives(membrane, &x, false, |_, _, _| {});
         (0..3).for_each(|a| gradient[triangle.vertices[a]] += forces[a]);
-        assert!(error(&x, 1e-6, |x| triangle.energy(&cloth.elastic.membrane, x), &gradient) < 1e-6);
+        assert!(error(&x, 1e-7, |x| triangle.energy(membrane, x), &gradient) < 1e-6);
     }
     for hinge in &cloth.elastic.hinges {
         let mut gradient = vec![DVec3::ZERO; x.len()];
@@ -97,10 +104,10 @@ fn exact_hessians_match_differences_of_gradients() {
     let mesh = strip(3, 2, 0.02);
     let cloth = Cloth::new(&mesh, &down(&mesh), &Material::default(), 0.5).unwrap();
     let x = shaken(&mesh.positions, 0.004);
-    for triangle in &cloth.elastic.triangles {
+    for (membrane, triangle) in membranes().iter().flat_map(|m| cloth.elastic.triangles.iter().map(move |t| (m, t))) {
         let mut blocks = Vec::new();
-        triangle.derivatives(&cloth.elastic.membrane, &x, true, |a, b, block| blocks.push((a, b, block)));
-        let force = |x: &[DVec3], a: usize| triangle.derivatives(&cloth.elastic.membrane, x, true, |_, _, _| {})[a];
+        triangle.derivatives(membrane, &x, true, |a, b, block| blocks.push((a, b, block)));
+        let force = |x: &[DVec3], a: usize| triangle.derivatives(membrane, x, true, |_, _, _| {})[a];
         assert!(hessian_error(&x, &triangle.vertices, &blocks, force) < 1e-5);
     }
     for hinge in &cloth.elastic.hinges {
