@@ -55,7 +55,7 @@ pub(super) fn write(path: &Path, rows: &[Row]) -> Result<()> {
     for Row { epoch, losses, distance, normal, bending, rate, seconds } in rows {
         let values = losses.iter().map(|(_, value)| value).chain([distance, normal]).map(f32::to_string);
         let bending = bending.map_or_else(String::new, |bending| bending.to_string());
-        let after = [bending, rate.to_string(), format!("{seconds:.1}")];
+        let after = [bending, rate.to_string(), format!("{seconds:.3}")];
         line([epoch.to_string()].into_iter().chain(values).chain(after).collect())?;
     }
     let bytes = table.into_inner().map_err(|error| wrong(path, error.to_string()))?;
@@ -116,7 +116,7 @@ mod tests {
         let losses = vec![("bend, J".to_owned(), -1.5), ("fine".to_owned(), 0.015_678_9)];
         let first =
             Row { epoch: 1, losses, distance: 0.02, normal: 11.25, bending: Some(1.25), rate: 1e-3, seconds: 0.1 };
-        let rows = [first.clone(), Row { epoch: 2, bending: None, seconds: 12.3, ..first }];
+        let rows = [first.clone(), Row { epoch: 2, bending: None, seconds: 12.345, ..first }];
         write(&path, &rows).unwrap();
         assert_eq!(read(&path).unwrap(), rows);
         let text = std::fs::read_to_string(&path).unwrap();
