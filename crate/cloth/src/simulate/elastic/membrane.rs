@@ -101,9 +101,7 @@ impl Triangle {
     /// At the positions `x` [n], singular values of `F`, largest first: the principal stretches.
     pub fn stretches(&self, x: &[DVec3]) -> [f64; 2] {
         let [f1, f2] = self.deformation(x);
-        let (a, b, c) = (f1.length_squared(), f2.length_squared(), f1.dot(f2));
-        let (mean, radius) = (0.5 * (a + b), (0.25 * (a - b) * (a - b) + c * c).sqrt());
-        [(mean + radius).sqrt(), (mean - radius).max(0.0).sqrt()]
+        Principal::of([f1.length_squared(), f2.length_squared(), f1.dot(f2)]).values.map(|value| value.max(0.0).sqrt())
     }
 
     /// Energy at the positions `x` [n], joules.

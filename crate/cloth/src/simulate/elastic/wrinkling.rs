@@ -21,6 +21,7 @@ pub struct Wrinkling {
 
 /// Energy, stress and slope at one principal strain.
 struct Response {
+    strain: f64,
     energy: f64,
     stress: f64,
     slope: f64,
@@ -35,21 +36,27 @@ impl Wrinkling {
     fn along(&self, strain: f64) -> Response {
         let k = self.stiffness;
         if strain >= 0.0 {
-            return Response { energy: 0.5 * k * strain * strain, stress: k * strain, slope: k };
+            return Response { strain, energy: 0.5 * k * strain * strain, stress: k * strain, slope: k };
         }
         let (fallen, lost) = ((strain / YIELD).exp(), (1.0 - SHARE) * YIELD);
         Response {
+            strain,
             energy: k * (0.5 * SHARE * strain * strain - lost * (strain + YIELD * (1.0 - fallen))),
             stress: k * (SHARE * strain - lost * (1.0 - fallen)),
             slope: k * (SHARE + (1.0 - SHARE) * fallen),
         }
     }
 
+    /// What there is along both principal directions at the strain (G11, G22, G12), and of the first direction `v`
+    /// (v₁², v₂², v₁v₂).
+    fn principal(&self, strain: [f64; 3]) -> ([Response; 2], [f64; 3]) {
+        let Principal { values, axis } = Principal::of(strain);
+        (values.map(|value| self.along(value)), [axis.x * axis.x, axis.y * axis.y, axis.x * axis.y])
+    }
+
     /// Energy per area and stress (s11, s22, s12) at the strain (G11, G22, G12).
     pub(super) fn response(&self, strain: [f64; 3]) -> (f64, [f64; 3]) {
-        let Principal { values, axis } = Principal::of(strain);
-        let [first, second] = values.map(|value| self.along(value));
-        let (xx, yy, xy) = (axis.x * axis.x, axis.y * axis.y, axis.x * axis.y);
+        let ([first, second], [xx, yy, xy]) = self.principal(strain);
         let (s1, s2) = (first.stress, second.stress);
         (first.energy + second.energy, [s1 * xx + s2 * yy, s1 * yy + s2 * xx, (s1 - s2) * xy])
     }
@@ -57,12 +64,10 @@ impl Wrinkling {
     /// Derivatives of the stress by (G11, G22, 2 G12), positive definite: slopes along the principal directions, and
     /// between them what turns the stress with the strain.
     pub(super) fn tangent(&self, strain: [f64; 3]) -> [[f64; 3]; 3] {
-        let Principal { values, axis } = Principal::of(strain);
-        let [first, second] = values.map(|value| self.along(value));
-        let apart = values[0] - values[1];
+        let ([first, second], [xx, yy, xy]) = self.principal(strain);
+        let apart = first.strain - second.strain;
         let turn =
             if apart > 1e-9 { (first.stress - second.stress) / apart } else { 0.5 * (first.slope + second.slope) };
-        let (xx, yy, xy) = (axis.x * axis.x, axis.y * axis.y, axis.x * axis.y);
         let (along, across, between) = ([xx, yy, xy], [yy, xx, -xy], [-2.0 * xy, 2.0 * xy, xx - yy]);
         let entry = |i: usize, j: usize| {
             first.slope * along[i] * along[j]
