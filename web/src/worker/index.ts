@@ -26,24 +26,24 @@ export async function loadModel(source: ModelSource, options: LoadOptions = {}):
   if (!port || port.broken) port = new Port();
   const to = port;
   let call = 0;
-  const load = to.ask<Extract<Answer, { loaded: object }>>(
-    { type: 'load', source: absolute(source), options: { ...rest, ...absoluteModules(rest), request: plain(request) } },
-    [],
-    onProgress,
-    (number) => (call = number),
-  );
+  const question = { type: 'load', source: absolute(source), options: { ...rest, ...absoluteModules(rest), request: plain(request) } } as const;
+  const load = to.ask<Extract<Answer, { loaded: object }>>(question, [], (number) => (call = number));
   const { end, done } = follow(signals);
-  try {
-    return new WorkerClothModel(to, (await until(end.signal, load)).loaded);
-  } catch (error) {
-    if (end.signal.aborted) {
-      to.tell({ call, type: 'abort' });
-      // It may have come meanwhile.
-      load.then(({ loaded }) => to.tell({ call: 0, type: 'dispose', model: loaded.model })).catch(() => undefined);
-    }
-    throw error;
-  } finally {
+  end.signal.addEventListener('abort', () => to.tell({ call, type: 'abort' }));
+  const deafen = onProgress && to.listen(call, onProgress);
+  const leave = (): void => {
     done();
+    deafen?.();
+  };
+  try {
+    const model = new WorkerClothModel(to, (await until(end.signal, load)).loaded);
+    model.complete.then(leave, leave);
+    return model;
+  } catch (error) {
+    leave();
+    // It may have come meanwhile.
+    if (end.signal.aborted) load.then(({ loaded }) => to.tell({ call: 0, type: 'dispose', model: loaded.model })).catch(() => undefined);
+    throw error;
   }
 }
 

@@ -6,7 +6,6 @@ import type { Answer, Refusal, Request } from './protocol.js';
 interface Waiting {
   resolve: (answer: Answer) => void;
   reject: (error: unknown) => void;
-  onProgress?: ((progress: Progress) => void) | undefined;
 }
 
 function newWorker(): Worker {
@@ -28,6 +27,8 @@ type Question = Request extends infer Each ? (Each extends Request ? Omit<Each, 
 export class Port {
   readonly #worker = newWorker();
   readonly #waiting = new Map<number, Waiting>();
+  /** By the call of a load: it may tell how far it is after its answer, until its folds are there. */
+  readonly #listeners = new Map<number, (progress: Progress) => void>();
   #calls = 0;
   #broken: CtsnError | undefined;
 
@@ -46,20 +47,21 @@ export class Port {
   }
 
   /** Asks, and answers when the worker does. `begun` hears the number of the call. */
-  ask<Wanted extends Answer>(
-    question: Question,
-    transfer: Transferable[],
-    onProgress?: (progress: Progress) => void,
-    begun?: (call: number) => void,
-  ): Promise<Wanted> {
+  ask<Wanted extends Answer>(question: Question, transfer: Transferable[], begun?: (call: number) => void): Promise<Wanted> {
     if (this.#broken) return Promise.reject(this.#broken);
     const call = ++this.#calls;
     return new Promise<Wanted>((resolve, reject) => {
       // It throws for what cannot be posted: then there is nothing to wait for.
       this.#worker.postMessage({ ...question, call }, { transfer });
-      this.#waiting.set(call, { resolve: resolve as (answer: Answer) => void, reject, onProgress });
+      this.#waiting.set(call, { resolve: resolve as (answer: Answer) => void, reject });
       begun?.(call);
     });
+  }
+
+  /** Hears how far the load of that call is; returns what ends it. */
+  listen(call: number, onProgress: (progress: Progress) => void): () => void {
+    this.#listeners.set(call, onProgress);
+    return () => this.#listeners.delete(call);
   }
 
   /** Says something that needs no answer. */
@@ -68,9 +70,9 @@ export class Port {
   }
 
   #settle(answer: Answer): void {
+    if ('progress' in answer) return this.#listeners.get(answer.call)?.(answer.progress);
     const waiting = this.#waiting.get(answer.call);
     if (!waiting) return;
-    if ('progress' in answer) return waiting.onProgress?.(answer.progress);
     this.#waiting.delete(answer.call);
     if ('refusal' in answer) waiting.reject(revive(answer.refusal));
     else waiting.resolve(answer);

@@ -31,6 +31,8 @@ async function load({ call, source, options }: Asked<'load'>): Promise<void> {
     const model = await loadModel(source, { ...options, backend: 'cpu', onProgress, signal: controller.signal });
     models.set(call, model);
     send({ call, loaded: describe(call, model) });
+    // Until then it may be aborted. Why the folds did not come is told to who asks for them: `complete`.
+    await model.complete.catch(() => undefined);
   } catch (error) {
     send({ call, refusal: refuse(error) });
   } finally {

@@ -242,13 +242,23 @@ fn sizes_of_nothing_are_refused() {
 }
 
 #[test]
-fn too_few_poses_and_empty_splits_are_refused() {
-    let mut dataset = dataset(20, 3);
+fn clips_to_watch_that_were_left_out_are_replaced() {
+    let mut left = dataset(12, 5);
+    left.samples.retain(|sample| sample.record.clip != 4);
+    let Slices { train, validation, .. } = slices(&left).unwrap();
+    let watched: Vec<_> = validation.iter().map(|sample| (sample.record.clip, sample.record.frame)).collect();
+    // Of twelve clips the last two are unseen.
+    assert_eq!((train.len(), watched), (40, vec![(9, 0), (9, 1), (9, 2), (9, 3), (9, 4)]));
+}
+
+#[test]
+fn too_few_poses_and_nothing_to_learn_from_are_refused() {
     let refused = |dataset: &Dataset| slices(dataset).unwrap_err().to_string();
-    dataset.samples.retain(|sample| sample.record.clip != 4 && sample.record.clip != 14);
-    let message = refused(&dataset);
-    assert!(message.contains("the validation split is empty: 54 poses of 20 clips"), "{message}");
-    dataset.samples.truncate(49);
-    let message = refused(&dataset);
+    let mut unseen = dataset(20, 30);
+    unseen.samples.retain(|sample| sample.record.clip >= 18);
+    let message = refused(&unseen);
+    assert!(message.contains("the training split is empty: 60 poses of 20 clips"), "{message}");
+    unseen.samples.truncate(49);
+    let message = refused(&unseen);
     assert!(message.contains("wanted at least 50 poses, found 49"), "{message}");
 }
