@@ -2,8 +2,8 @@
 import { gzipSync } from 'node:zlib';
 import { MeshBasicMaterial } from 'three';
 import { afterEach, expect, test, vi } from 'vitest';
-import { loadModel, preload, type BackendChoice, type ClothModel, type CpuClothModel, type CtsnError } from 'ctsn';
-import { Cloth } from 'ctsn/three';
+import { loadModel, preload, type BackendChoice, type ClothModel, type CpuClothModel, type CtsnError, type ModelSource } from 'ctsn';
+import { Cloth, Wardrobe, type WearOptions } from 'ctsn/three';
 import { difference } from '../../tests/browser/safetensors.js';
 import { characterOf } from './character.js';
 import { fakeCaches } from './fake-caches.js';
@@ -64,6 +64,22 @@ test('without the word a model is complete; an older file is, too', async () => 
   expect(older.finest).toBe('full');
   model.dispose();
   older.dispose();
+});
+
+test('garments on their way tell of one progress: a total where all have told theirs', async () => {
+  const load = (source: ModelSource, { onProgress }: WearOptions) => {
+    onProgress!({ loaded: 5, total: 9 });
+    return loadModel(source);
+  };
+  const model = await loadModel(bytesOf('small'));
+  const garments = { shirt: bytesOf('small'), dress: bytesOf('small') };
+  const character = characterOf(model.joints, poses[0]!);
+  const wardrobe = new Wardrobe(character, garments, { material: new MeshBasicMaterial(), load });
+  const heard: unknown[] = [];
+  await wardrobe.wear(['shirt', 'dress'], { onProgress: (progress) => heard.push(progress) });
+  expect(heard).toEqual([{ loaded: 5 }, { loaded: 10, total: 18 }]);
+  wardrobe.dispose();
+  model.dispose();
 });
 
 test('a cloth keeps running while its folds come, without a jump', async () => {

@@ -1,5 +1,6 @@
 import { Group, type Material, type SkinnedMesh } from 'three';
 import { either } from '../arrival.js';
+import { together } from '../download.js';
 import { CtsnError } from '../error.js';
 import { loadModel, preload, type LoadOptions, type ModelSource } from '../load.js';
 import type { Quality } from '../quality.js';
@@ -144,7 +145,8 @@ export class Wardrobe<Name extends string = string> extends Group {
     this.#wanted = names;
     const end = signal ? either(signal, call.signal) : call.signal;
     const missing = names.filter((name) => !this.#garments.has(name));
-    const coming = missing.map((name) => this.#open(name, { signal: end, onProgress }));
+    const each = together(missing.length, onProgress);
+    const coming = missing.map((name, i) => this.#open(name, { signal: end, onProgress: each(i) }));
     const settled = await Promise.allSettled(coming);
     const failed = settled.find((result) => result.status === 'rejected');
     if (failed || call.signal.aborted) {
