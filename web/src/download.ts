@@ -24,6 +24,11 @@ export interface DownloadOptions {
   signal?: AbortSignal | undefined;
 }
 
+/** The same with an ear for every piece that comes. */
+export interface PartsOptions extends DownloadOptions {
+  onPart?: ((part: Uint8Array) => void) | undefined;
+}
+
 /** One progress of several files: hears of each by its number, tells their bytes together. */
 export function together(files: number, onProgress: DownloadOptions['onProgress']): (file: number) => DownloadOptions['onProgress'] {
   const heard: Progress[] = Array.from({ length: files }, () => ({ loaded: 0 }));
@@ -34,11 +39,6 @@ export function together(files: number, onProgress: DownloadOptions['onProgress'
       const total = heard.reduce((sum, each) => sum + (each.total ?? NaN), 0);
       onProgress(isNaN(total) ? { loaded } : { loaded, total });
     });
-}
-
-/** The same with an ear for every piece that comes. */
-export interface PartsOptions extends DownloadOptions {
-  onPart?: ((part: Uint8Array) => void) | undefined;
 }
 
 /** Fetches a file to its end, reporting true byte sizes; `file:` addresses work in Node. */
