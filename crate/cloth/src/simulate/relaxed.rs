@@ -15,6 +15,10 @@ use ctsn_rig::path::to_body_frame;
 /// Iterations after which a pose is given up of which there are as many as one likes.
 const TRIED: usize = 100;
 
+/// How many times as many iterations as others thinned cloth may take. It is cheap, and what slides for long, such as a
+/// tight skirt up the hips of legs astride, is what there is least of. docs/decisions/poses.md
+const PATIENT: usize = 5;
+
 /// Share of the vertices that may lie inside the body where cloth was relaxed coarsely: nothing kept them out between
 /// those of the thinned garment. A hundredth left out 509 of 1,352 poses of a monster's robe, nine in ten of which had
 /// at most two.
@@ -58,7 +62,7 @@ impl Simulator {
             return self.refuse(reason);
         }
         let (mut solver, body) = self.begin(level, &coarse.restrict(template), coarse.restrict(start), pose);
-        let relaxed = solver.relax(Some(&body), self.settings.relax_iterations);
+        let relaxed = solver.relax(Some(&body), PATIENT * self.settings.relax_iterations);
         let mut laid = coarse.prolong(template, &solver.positions);
         untangle(&self.level.cloth.elements, &self.level.rings, &mut laid);
         let mut fine = self.level.solver(&self.settings, laid);

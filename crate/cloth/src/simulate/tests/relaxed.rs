@@ -4,7 +4,8 @@ use glam::DVec3;
 
 use super::pose::{simulator, stride};
 use super::scene::{legs, skirt};
-use crate::simulate::{Outcome, Status};
+use crate::simulate::{Material, Outcome, Settings, Simulator, Status};
+use ctsn_rig::Garment;
 
 fn mean(a: &[DVec3], b: &[DVec3]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a.distance(*b)).sum::<f64>() / a.len() as f64
@@ -57,6 +58,11 @@ fn a_fine_skirt_is_laid_where_its_coarse_one_comes_to_rest() {
         panic!("accepted")
     };
     assert!(reason.contains("start: wanted 2976"), "{reason}");
+    let hasty = Settings { relax_iterations: 30, ..simulator.settings.clone() };
+    let garment = Garment { mesh: skirt(96, 30), ..Garment::default() };
+    let hasty = Simulator::new(&character, &garment, Material::default(), hasty).unwrap();
+    let patient = hasty.relax_coarse(&template, &pose, &start).expect("a fine skirt");
+    assert!(patient.converged() && patient.iterations > 30, "{:?} after {}", patient.status, patient.iterations);
     // A tenth of a metre aside, through both legs.
     let aside: Vec<DVec3> = start.iter().map(|p| *p + 0.1 * DVec3::X).collect();
     let outcome = simulator.relax_coarse(&template, &pose, &aside).expect("a fine skirt");
