@@ -27,19 +27,28 @@ const ASTRAY: f64 = 0.03;
 impl Simulator {
     /// Relaxes `pose` from `start` (body frame [n]), which may cross itself and the body a little. The equilibrium is
     /// as true as that which [`simulate`](Self::simulate) comes to, but of all there are the one nearest to the start.
-    /// What is left out is tried again once only: a start on the wrong side of a limb stays there.
+    /// What is left out is tried again once only: a start on the wrong side of a limb stays there. A fine garment that
+    /// does not come to rest, for it slides far, is relaxed once more from where its thinned form does.
     pub fn relax(&self, template: &[DVec3], pose: &Pose, start: &[DVec3]) -> Outcome {
-        self.relax_for(template, pose, start, self.settings.relax_iterations)
+        let relax = |start: &[DVec3]| self.relax_for(template, pose, start, self.settings.relax_iterations);
+        let outcome = relax(start);
+        let slid = (!outcome.converged()).then(|| self.slid(template, pose, start)).flatten();
+        slid.map_or(outcome, |slid| relax(&slid))
     }
 
     /// The same, given up where it is not at rest soon: fourteen poses of a dress came to rest within 91 iterations,
     /// and what did not in 400 was left out after all. A fine garment begins where its thinned form comes to rest:
     /// layers of a prediction that are jammed part there, in a fifth of the time.
     pub fn try_relax(&self, template: &[DVec3], pose: &Pose, start: &[DVec3]) -> Outcome {
-        let coarse = self.coarse.as_ref().map(|thinned| self.relax_as(thinned, template, pose, start));
-        let coarse = coarse.filter(Outcome::converged);
-        let start = coarse.as_ref().map_or(start, |coarse| &coarse.positions);
+        let slid = self.slid(template, pose, start);
+        let start = slid.as_deref().unwrap_or(start);
         self.relax_for(template, pose, start, TRIED.min(self.settings.relax_iterations))
+    }
+
+    /// A fine garment laid where its thinned form comes to rest, if it does.
+    fn slid(&self, template: &[DVec3], pose: &Pose, start: &[DVec3]) -> Option<Vec<DVec3>> {
+        let relaxed = self.relax_as(self.coarse.as_ref()?, template, pose, start);
+        relaxed.converged().then_some(relaxed.positions)
     }
 
     fn relax_for(&self, template: &[DVec3], pose: &Pose, start: &[DVec3], iterations: usize) -> Outcome {

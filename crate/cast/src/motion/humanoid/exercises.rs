@@ -155,7 +155,7 @@ fn turn() -> Move {
     Move { name: "turn", period: 11.4, keys: left }
 }
 
-/// Lunges to the front and the side, arms stretched out.
+/// Lunges to the front with either leg, arms stretched out.
 fn lunge() -> Move {
     let front = Posture {
         hips: [0.0, -0.20, 0.10],

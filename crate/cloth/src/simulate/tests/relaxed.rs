@@ -58,11 +58,14 @@ fn a_fine_skirt_is_laid_where_its_coarse_one_comes_to_rest() {
         panic!("accepted")
     };
     assert!(reason.contains("start: wanted 2976"), "{reason}");
-    let hasty = Settings { relax_iterations: 30, ..simulator.settings.clone() };
+    let hasty = Settings { relax_iterations: 60, ..simulator.settings.clone() };
     let garment = Garment { mesh: skirt(96, 30), ..Garment::default() };
     let hasty = Simulator::new(&character, &garment, Material::default(), hasty).unwrap();
     let patient = hasty.relax_coarse(&template, &pose, &start).expect("a fine skirt");
-    assert!(patient.converged() && patient.iterations > 30, "{:?} after {}", patient.status, patient.iterations);
+    assert!(patient.converged() && patient.iterations > 60, "{:?} after {}", patient.status, patient.iterations);
+    // From the waves themselves the fine one is still moving by millimetres then.
+    let relaxed = hasty.relax(&template, &pose, &start);
+    assert!(relaxed.converged() && relaxed.iterations < 60, "{:?} after {}", relaxed.status, relaxed.iterations);
     // A tenth of a metre aside, through both legs.
     let aside: Vec<DVec3> = start.iter().map(|p| *p + 0.1 * DVec3::X).collect();
     let outcome = simulator.relax_coarse(&template, &pose, &aside).expect("a fine skirt");
