@@ -14,7 +14,7 @@ pub const KEYS: u64 = 9;
 /// P, a prime: one more than the number of all keys. g, a primitive root of P.
 const LATTICE: (u64, u64) = (37, 5);
 
-/// The lower limits.
+/// The lower limits; the hips' are those above feet side by side, see [`above`].
 pub const LEAST: Posture = Posture {
     heading: -20.0,
     hips: [-0.06, -0.26, -0.05],
@@ -22,7 +22,7 @@ pub const LEAST: Posture = Posture {
     spine: [-14.0, -32.0, -24.0],
     head: [-20.0, -42.0, -14.0],
     arms: [[20.0, -24.0, -14.0, 6.0, -12.0]; 2],
-    feet: [[0.01, 0.0, -0.12, 2.0, 0.0]; 2],
+    feet: [[0.01, 0.0, -0.3, 2.0, 0.0]; 2],
 };
 /// The upper limits.
 pub const MOST: Posture = Posture {
@@ -32,8 +32,18 @@ pub const MOST: Posture = Posture {
     spine: [32.0, 32.0, 24.0],
     head: [24.0, 42.0, 14.0],
     arms: [[145.0, 76.0, 56.0, 96.0, 22.0]; 2],
-    feet: [[0.12, 0.0, 0.12, 22.0, 10.0]; 2],
+    feet: [[0.45, 0.0, 0.3, 30.0, 10.0]; 2],
 };
+
+/// The hips between the feet, and as much lower as legs set apart reach less high.
+fn above(posture: Posture) -> Posture {
+    let Posture { mut hips, feet: [left, right], .. } = posture;
+    let (aside, ahead) = ((left[0] + right[0]) / 2.0, (left[2] - right[2]) / 2.0);
+    hips[0] += (left[0] - right[0]) / 2.0;
+    hips[1] -= 1.0 - (1.0 - aside * aside - ahead * ahead).sqrt();
+    hips[2] += (left[2] + right[2]) / 2.0;
+    Posture { hips, ..posture }
+}
 
 /// Key postures of wandering number `which`, from 0.
 pub fn keys(which: u64) -> Vec<(f64, Posture)> {
@@ -44,7 +54,7 @@ pub fn keys(which: u64) -> Vec<(f64, Posture)> {
             level.set(level.get() * root % prime);
             least + (most - least) * level.get() as f64 / prime as f64
         });
-        (PERIOD * i as f64 / KEYS as f64, posture)
+        (PERIOD * i as f64 / KEYS as f64, above(posture))
     };
     (0..KEYS).map(key).collect()
 }
