@@ -4,9 +4,9 @@ import { runInNewContext } from 'node:vm';
 setFlagsFromString('--expose-gc');
 // With so large a young generation no collection falls between two readings.
 setFlagsFromString('--semi-space-growth-factor=16');
-// Every function is compiled for itself, as on a page, and waited for. A loop of calls compiled as a whole while it ran
-// inlined so much, now and then, that what was left over boxed its numbers for good: 200 bytes a call in 3 of some 100
-// runs beside a full machine, in 1 of 240 where it was waited for, and in none of 150 without such loops.
+// Every function is compiled for itself, as on a page, and waited for. Numbers stayed boxed for good, 200 bytes a call,
+// in 3 of some 100 runs beside a full machine, in 1 of 240 where the compiler was waited for, and in none of 150 where
+// no loop was compiled as a whole while it ran: such code inlines much, and what it has no room for may box, it seems.
 setFlagsFromString('--no-use-osr');
 setFlagsFromString('--no-concurrent-recompilation');
 

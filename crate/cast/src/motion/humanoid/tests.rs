@@ -138,8 +138,8 @@ fn feet_stay_on_the_floor_and_the_root_near_its_place() {
                 assert!(root < 0.5, "{name}, {} wanders off: {root} m", clip.name);
                 // Also far apart, both feet reach the floor; a heel is up by 10° at most.
                 let lifted = |joint: usize| pose[joint].translation.y - bind[joint].translation.y;
-                let most = feet.map(lifted).into_iter().fold(0.0, f64::max);
-                assert!(!clip.name.starts_with("wander") || most < 0.04, "{name}, {}: a foot {most} m up", clip.name);
+                let up = feet.map(lifted).into_iter().fold(0.0, f64::max);
+                assert!(!clip.name.starts_with("wander") || up < 0.04, "{name}, {}: a foot {up} m up", clip.name);
             }
         }
     }
