@@ -35,10 +35,9 @@ const FINE_EXACT_BELOW: f64 = 1.0;
 
 /// Time step under which the proximal term alone keeps a cloth still, seconds.
 const HOLDING: f64 = 0.05;
-/// Time step that, where it is not exceeded for a [`WINDOW`], says that the cloth is jammed: layers of a predicted start
+/// Time step that, where it is not reached for a [`WINDOW`], says that the cloth is jammed: layers of a predicted start
 /// that are a ten-thousandth of a millimetre apart open by as much again in an iteration, and hold all the rest. A
-/// thousand iterations part few of them. With a tenth of it ten frames of a stranger's skirt took 231 s of a core, with
-/// this 180, without any 329.
+/// thousand iterations part few of them. docs/decisions/poses.md
 const JAMMED: f64 = 1e-3;
 
 /// Iterations over which a relaxation's drift is taken.
