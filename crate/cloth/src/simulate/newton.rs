@@ -37,7 +37,7 @@ const FINE_EXACT_BELOW: f64 = 1.0;
 const HOLDING: f64 = 0.05;
 /// Time step that, where it is not reached for a [`WINDOW`], says that the cloth is jammed: layers of a predicted start
 /// that are a ten-thousandth of a millimetre apart open by as much again in an iteration, and hold all the rest. A
-/// thousand iterations part few of them. docs/decisions/poses.md
+/// thousand iterations part few of them. docs/decisions/simulation.md
 const JAMMED: f64 = 1e-3;
 
 /// Iterations over which a relaxation's drift is taken.

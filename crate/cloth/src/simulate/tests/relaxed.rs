@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::pose::{simulator, stride};
 use super::scene::{legs, skirt};
 use crate::simulate::{Material, Outcome, Settings, Simulator, Status};
-use ctsn_rig::Garment;
+use ctsn_rig::{Garment, Pose};
 
 fn mean(a: &[DVec3], b: &[DVec3]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a.distance(*b)).sum::<f64>() / a.len() as f64
@@ -16,17 +16,23 @@ fn waved(truth: &[DVec3], height: f64) -> Vec<DVec3> {
     truth.iter().map(|p| *p + height * DVec3::new((40.0 * p.y).sin(), 0.0, (40.0 * p.x).sin())).collect()
 }
 
-#[test]
-fn from_a_start_near_it_a_pose_comes_to_the_same_rest() {
+/// A skirt with so many vertices around and rows, its template, a stride, and where the skirt comes to along the path.
+fn striding(around: usize, rows: usize) -> (Simulator, Vec<DVec3>, Pose, Vec<DVec3>) {
     let character = legs();
-    let simulator = simulator(&character, skirt(30, 9), 30).unwrap();
+    let simulator = simulator(&character, skirt(around, rows), around as u32).unwrap();
     let template = simulator.drape().unwrap();
     let pose = stride(&character, 40.0, 20.0, 10.0);
-    let along_the_path = simulator.simulate(&template, &pose);
-    let start = waved(&along_the_path.positions, 0.01);
+    let rest = simulator.simulate(&template, &pose).positions;
+    (simulator, template, pose, rest)
+}
+
+#[test]
+fn from_a_start_near_it_a_pose_comes_to_the_same_rest() {
+    let (simulator, template, pose, rest) = striding(30, 9);
+    let start = waved(&rest, 0.01);
     let relaxed = simulator.relax(&template, &pose, &start);
     assert!(relaxed.converged(), "{:?}", relaxed.status);
-    let [before, after] = [&start, &relaxed.positions].map(|state| mean(state, &along_the_path.positions));
+    let [before, after] = [&start, &relaxed.positions].map(|state| mean(state, &rest));
     assert!(before > 5e-3 && after < 0.5 * before, "{before} m away at first, {after} in the end");
     assert_eq!(relaxed, simulator.relax(&template, &pose, &start), "no state is kept");
     assert_eq!(relaxed, simulator.try_relax(&template, &pose, &start), "at rest soon");
@@ -40,16 +46,12 @@ fn from_a_start_near_it_a_pose_comes_to_the_same_rest() {
 /// 2,976 vertices, relaxed as 700.
 #[test]
 fn a_fine_skirt_is_laid_where_its_coarse_one_comes_to_rest() {
-    let character = legs();
-    let simulator = simulator(&character, skirt(96, 30), 96).unwrap();
+    let (simulator, template, pose, fine) = striding(96, 30);
     assert!(simulator.is_fine());
-    let template = simulator.drape().unwrap();
-    let pose = stride(&character, 40.0, 20.0, 10.0);
-    let fine = simulator.simulate(&template, &pose);
-    let start = waved(&fine.positions, 0.03);
+    let start = waved(&fine, 0.03);
     let coarse = simulator.relax_coarse(&template, &pose, &start).expect("a fine skirt");
     assert!(coarse.converged() && coarse.residual < 1e-2, "{:?}", coarse.status);
-    let [before, after] = [&start, &coarse.positions].map(|state| mean(state, &fine.positions));
+    let [before, after] = [&start, &coarse.positions].map(|state| mean(state, &fine));
     // Such waves buckle it elsewhere, so it does not come back all the way.
     assert!(before > 0.02 && after < 0.8 * before, "{before} m away at first, {after} in the end");
     let Some(Outcome { status: Status::Rejected { reason }, .. }) =
@@ -60,7 +62,7 @@ fn a_fine_skirt_is_laid_where_its_coarse_one_comes_to_rest() {
     assert!(reason.contains("start: wanted 2976"), "{reason}");
     let hasty = Settings { relax_iterations: 60, ..simulator.settings.clone() };
     let garment = Garment { mesh: skirt(96, 30), ..Garment::default() };
-    let hasty = Simulator::new(&character, &garment, Material::default(), hasty).unwrap();
+    let hasty = Simulator::new(&legs(), &garment, Material::default(), hasty).unwrap();
     let patient = hasty.relax_coarse(&template, &pose, &start).expect("a fine skirt");
     assert!(patient.converged() && patient.iterations > 60, "{:?} after {}", patient.status, patient.iterations);
     // From the waves themselves the fine one is still moving by millimetres then.
@@ -76,11 +78,7 @@ fn a_fine_skirt_is_laid_where_its_coarse_one_comes_to_rest() {
 /// this came to rest within 99 iterations.
 #[test]
 fn layers_that_jam_are_given_up_soon() {
-    let character = legs();
-    let simulator = simulator(&character, skirt(30, 9), 30).unwrap();
-    let template = simulator.drape().unwrap();
-    let pose = stride(&character, 40.0, 20.0, 10.0);
-    let rest = simulator.simulate(&template, &pose).positions;
+    let (simulator, template, pose, rest) = striding(30, 9);
     let wave = |p: &DVec3| DVec3::new((60.0 * p.y).sin(), (60.0 * p.z).cos(), (78.0 * p.x).sin());
     let jammed: Vec<DVec3> = rest.iter().map(|p| *p + 0.12 * wave(p)).collect();
     let outcome = simulator.relax(&template, &pose, &jammed);
