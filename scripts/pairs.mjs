@@ -11,7 +11,7 @@ export const PAIRS = {
   'anna-tshirt': { vertices: 2100, minutes: 60, shown: 'throw' },
   'anna-skirt': { vertices: 2100, minutes: 60, shown: 'throw' },
   'anna-dress': { vertices: 3000, minutes: 60, steps: 24, shown: 'throw' },
-  'qman-robe': { vertices: 3000, minutes: 60, mixed: 2300, shown: 'throw' },
+  'qman-robe': { vertices: 6020, minutes: 150, mixed: 2300, steps: 32, shown: 'throw' },
   'qman-tshirt': { vertices: 2100, minutes: 60, steps: 24, shown: 'throw' },
   'monster-robe': { vertices: 3000, minutes: 60, shown: 'throw' },
   'dolphin-vest': { vertices: 2500, minutes: 40, shown: 'curl' },
