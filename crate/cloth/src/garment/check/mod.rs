@@ -19,6 +19,7 @@ use crate::wrap::{bones, complete};
 use crate::{Error, Result};
 use ctsn_rig::gltf::{Source, read_garment};
 use ctsn_rig::{Character, Garment};
+use std::collections::BTreeSet;
 use std::path::Path;
 
 /// What a check found. One sentence each, with vertex numbers.
@@ -49,7 +50,7 @@ pub fn check(character: &Character, garment: &Garment, source: &Source) -> Resul
 /// The same beside a body whose outer skin is known.
 fn check_beside(outside: &Outside, garment: &Garment, source: &Source) -> Findings {
     let mut findings = Findings::default();
-    topology::check(&garment.mesh, source, &mut findings);
+    topology::check(garment, source, &mut findings);
     fit::check(outside, garment, source, &mut findings);
     crossings(garment, source, &mut findings);
     findings
@@ -129,10 +130,12 @@ pub fn rehearse(character: &Character, garment: &Garment, pinched: f64) -> Resul
     Ok(moved.fold(0.0, f64::max))
 }
 
-/// The first few of a list, and how many there are.
+/// The first few of a list, each once, and how many there are: several vertices of an even mesh stand for one of the
+/// file's.
 pub(super) fn list(items: impl Iterator<Item = String>) -> String {
     const SHOWN: usize = 6;
-    let items: Vec<String> = items.collect();
+    let mut seen = BTreeSet::new();
+    let items: Vec<String> = items.filter(|item| seen.insert(item.clone())).collect();
     let shown = items[..items.len().min(SHOWN)].join(", ");
     if items.len() > SHOWN { format!("{shown}, … ({} in all)", items.len()) } else { shown }
 }

@@ -3,7 +3,7 @@
 use super::*;
 use crate::garment::test::person;
 use crate::garment::{Cut, Kind, shell};
-use ctsn_rig::Mesh;
+use ctsn_rig::{Drawn, Mesh};
 use glam::DVec3;
 
 /// A person and a sound skirt.
@@ -123,4 +123,23 @@ fn holes_and_loose_pieces_are_remarked_upon() {
         &findings(&person, buttoned).warnings,
         &["2 pieces", &format!("3 vertices with vertex {}", first + 100)],
     );
+}
+
+#[test]
+fn thin_faces_are_remarked_upon_where_someone_drew_them() {
+    let (person, mut skirt) = scene();
+    let [a, b, _] = skirt.mesh.triangles[skirt.mesh.triangles.len() / 2].map(|vertex| vertex as usize);
+    let [from, to] = [a, b].map(|vertex| skirt.mesh.positions[vertex]);
+    skirt.mesh.positions[a] = to.lerp(from, 0.05);
+    assert_says(&findings(&person, skirt.mesh.clone()).warnings, &["thin faces", &(a + 100).to_string()]);
+    let source = Source { numbers: (0..skirt.mesh.positions.len() as u32).collect(), ..Source::default() };
+    let own = Garment { mesh: skirt.mesh, drawn: Some(Drawn::default()), ..Garment::default() };
+    assert_eq!(check(&person, &own, &source).unwrap(), Findings::default());
+}
+
+#[test]
+fn a_list_names_each_vertex_once() {
+    let numbers = [14, 14, 15, 16, 14, 17, 18, 19, 20, 20];
+    let named = list(numbers.iter().map(u32::to_string));
+    assert_eq!(named, "14, 15, 16, 17, 18, 19, … (7 in all)");
 }

@@ -1,6 +1,7 @@
 //! Faults of the mesh by itself: faces, edges, holes, pieces.
 
 use super::{Findings, list};
+use ctsn_rig::Garment;
 use ctsn_rig::gltf::Source;
 use ctsn_rig::mesh::triangle::least_angle;
 use ctsn_rig::mesh::{Edges, Mesh, Side};
@@ -18,8 +19,9 @@ pub const HOLE_SHARE: f64 = 0.12;
 /// A loop of so few edges is a missing face or two.
 pub const HOLE_EDGES: usize = 6;
 
-/// Checks the mesh.
-pub(super) fn check(mesh: &Mesh, source: &Source, findings: &mut Findings) {
+/// Checks the mesh that is simulated.
+pub(super) fn check(garment: &Garment, source: &Source, findings: &mut Findings) {
+    let mesh = &garment.mesh;
     let number = |v: u32| source.numbers[v as usize];
     let face = |t: [u32; 3]| format!("{}-{}-{}", number(t[0]), number(t[1]), number(t[2]));
     let warnings = &mut findings.warnings;
@@ -31,7 +33,7 @@ pub(super) fn check(mesh: &Mesh, source: &Source, findings: &mut Findings) {
         let faces = list(source.degenerate.iter().map(|[a, b, c]| format!("{a}-{b}-{c}")));
         warnings.push(format!("faces without an area, left out: {faces}"));
     }
-    slivers(mesh, &face, findings);
+    slivers(garment, &face, findings);
     let copies = copies(mesh);
     if !copies.is_empty() {
         let faces = list(copies.iter().map(|&t| face(mesh.triangles[t])));
@@ -55,8 +57,10 @@ pub(super) fn check(mesh: &Mesh, source: &Source, findings: &mut Findings) {
     pieces(mesh, &number, findings);
 }
 
-/// Triangles so thin that their shape is rounding error, or nearly.
-fn slivers(mesh: &Mesh, face: &impl Fn([u32; 3]) -> String, findings: &mut Findings) {
+/// Triangles so thin that their shape is rounding error, or nearly. The latter of a mesh made here are nobody's to
+/// mend.
+fn slivers(garment: &Garment, face: &impl Fn([u32; 3]) -> String, findings: &mut Findings) {
+    let mesh = &garment.mesh;
     let least = |t: &[u32; 3]| least_angle(t.map(|v| mesh.positions[v as usize]));
     let between =
         |low: f64, high: f64| list(mesh.triangles.iter().filter(|t| (low..high).contains(&least(t))).map(|t| face(*t)));
@@ -64,7 +68,7 @@ fn slivers(mesh: &Mesh, face: &impl Fn([u32; 3]) -> String, findings: &mut Findi
     if !refused.is_empty() {
         findings.errors.push(format!("slivers, an angle below {SLIVER}° (faces by vertices): {refused}"));
     }
-    if !remarked.is_empty() {
+    if !remarked.is_empty() && garment.drawn.is_none() {
         let reason = "even triangles simulate faster";
         findings.warnings.push(format!("thin faces, an angle below {THIN}° (by vertices): {remarked}; {reason}"));
     }
