@@ -13,7 +13,7 @@ export const PAIRS = {
   'anna-dress': { vertices: 3000, minutes: 60, steps: 24, shown: 'throw' },
   'qman-robe': { vertices: 6020, minutes: 150, mixed: 2300, steps: 32, shown: 'throw' },
   'qman-tshirt': { vertices: 2100, minutes: 60, steps: 24, shown: 'throw' },
-  'monster-robe': { vertices: 3000, minutes: 60, shown: 'throw' },
+  'monster-robe': { vertices: 3000, minutes: 85, steps: 24, shown: 'throw' },
   'dolphin-vest': { vertices: 2500, minutes: 40, shown: 'curl' },
   'cat-coat': { vertices: 3000, minutes: 60, shown: 'swat' },
   'fox-cape': { vertices: 4000, minutes: 60, mixed: 1600, shown: 'swat' },
