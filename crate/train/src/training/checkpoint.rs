@@ -8,11 +8,15 @@ use ctsn_rig::file::{tensors, write};
 use std::path::Path;
 use std::time::Instant;
 
+/// By what the best parameters were kept: after another rule they are not those of the epoch that the curve tells.
+const KEPT: &str = "by E_dist times E_norm";
+
 impl Trainer {
     /// Writes a checkpoint.
     pub fn save(&self, path: &Path) -> Result<()> {
         let mut file = Tensors::default();
         file.metadata.insert("settings".to_owned(), self.key());
+        file.metadata.insert("kept".to_owned(), KEPT.to_owned());
         let past = serde_json::to_string(&(self.untrained, self.first, &self.curve));
         file.metadata.insert("curve".to_owned(), past.map_err(|error| Error::Training(error.to_string()))?);
         self.parameters.save(&mut file);
@@ -27,7 +31,8 @@ impl Trainer {
     pub fn resume(&mut self, path: &Path) -> Result<()> {
         let wrong = |reason: String| Error::File { path: path.to_owned(), reason };
         let file = tensors(path)?;
-        if file.metadata.get("settings") != Some(&self.key()) {
+        let told = |name: &str| file.metadata.get(name).map(String::as_str);
+        if told("settings") != Some(&self.key()) || told("kept") != Some(KEPT) {
             return Err(wrong("is a checkpoint of another training; delete it to start anew".to_owned()));
         }
         let past = file.metadata.get("curve").and_then(|text| serde_json::from_str(text).ok());
