@@ -29,6 +29,9 @@ pub struct Row {
 
 const BENDING: &str = "validation_bending";
 
+/// How many times the least E_dist is as good as that.
+const NEAR: f32 = 1.01;
+
 /// Ends the name of a loss's column.
 const LOSS: &str = "_loss";
 
@@ -38,17 +41,31 @@ impl Row {
         ["fine", "smooth"].iter().any(|name| self.loss(name).is_some())
     }
 
-    /// What the best epoch has the least of: E_dist times E_norm; `distance` alone where nothing was validated. E_dist
-    /// soon stands still: by it alone the best is a matter of chance, and later epochs, whose folds are nearer, are
-    /// passed over.
-    pub fn error(&self) -> f32 {
-        if self.normal > 0.0 { self.distance * self.normal } else { self.distance }
+    /// Whether it is kept in place of `kept`, the best before; `least`: the least E_dist so far, its own among them.
+    fn is_better(&self, kept: &Self, least: f32) -> bool {
+        if self.normal == 0.0 {
+            return self.distance < kept.distance;
+        }
+        let near = |row: &Self| row.distance <= NEAR * least;
+        near(self) && (!near(kept) || self.normal < kept.normal)
     }
 
     /// The mean of the loss of that name.
     pub fn loss(&self, name: &str) -> Option<f32> {
         self.losses.iter().find(|(known, _)| known == name).map(|(_, value)| *value)
     }
+}
+
+/// The best epoch: of those near the least E_dist so far that of the least E_norm; of the least `distance` where nothing
+/// was validated. E_dist soon stands still: by it alone the best is a matter of chance, and later epochs, whose folds
+/// are nearer, are passed over. E_dist times E_norm would keep the smooth cloth of the first epochs where it is hard to
+/// learn (without a skeleton stream). Docs: decisions/training.md
+pub(super) fn best(rows: &[Row]) -> Option<&Row> {
+    let mut least = f32::INFINITY;
+    rows.iter().reduce(|kept, row| {
+        least = least.min(kept.distance).min(row.distance);
+        if row.is_better(kept, least) { row } else { kept }
+    })
 }
 
 /// Writes the curve; rows of one training have the same losses.
@@ -115,6 +132,19 @@ fn wrong(path: &Path, reason: String) -> Error {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn near_the_least_distance_normals_choose_the_epoch() {
+        let row = |(i, [distance, normal]): (usize, [f32; 2])| Row { epoch: i + 1, distance, normal, ..Row::default() };
+        let kept = |errors: &[[f32; 2]]| {
+            let rows: Vec<Row> = errors.iter().copied().enumerate().map(row).collect();
+            best(&rows).map(|best| best.epoch)
+        };
+        assert_eq!(kept(&[]), None);
+        assert_eq!(kept(&[[0.034, 9.0], [0.020, 12.0], [0.0201, 11.0], [0.0203, 10.0]]), Some(3), "10° is too far off");
+        assert_eq!(kept(&[[0.0201, 11.0], [0.020, 12.0], [0.0198, 11.5]]), Some(3), "the first is no longer near");
+        assert_eq!(kept(&[[0.9, 0.0], [0.899, 0.0], [0.8995, 0.0]]), Some(2), "without truth");
+    }
 
     #[test]
     fn what_is_written_is_read_and_what_is_broken_is_named() {

@@ -79,10 +79,10 @@ impl Trainer {
         let rate = self.rate(self.epoch * self.steps());
         let losses = self.terms.iter().map(|term| term.name.to_owned()).zip(losses).collect();
         let row = Row { epoch: self.epoch, losses, distance, normal, bending, rate, seconds: self.seconds() };
-        if self.best_epoch().is_none_or(|best| row.error() < best.error()) {
+        self.curve.push(row.clone());
+        if self.best_epoch().is_some_and(|best| best.epoch == row.epoch) {
             self.best = self.parameters.each().map(|(_, values)| values.to_vec()).collect();
         }
-        self.curve.push(row.clone());
         Ok(row)
     }
 
@@ -103,10 +103,9 @@ impl Trainer {
         schedule(self.settings.rate, self.progress_at(step) as f32)
     }
 
-    /// The epoch with the least [`Row::error`] on the validation slice.
+    /// The epoch that is best on the validation slice.
     pub fn best_epoch(&self) -> Option<&Row> {
-        // The first of equals, as in `round`.
-        self.curve.iter().min_by(|a, b| a.error().total_cmp(&b.error()))
+        curve::best(&self.curve)
     }
 
     /// Whether the epochs are done or the time is up: an epoch that would end later than half its time past the budget
