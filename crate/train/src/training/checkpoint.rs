@@ -9,7 +9,7 @@ use std::path::Path;
 use std::time::Instant;
 
 /// By what the best parameters were kept: after another rule they are not those of the epoch that the curve tells.
-const KEPT: &str = "near the least E_dist, by E_norm";
+const KEPT: &str = "near the least E_dist, by E_dist times E_norm";
 
 impl Trainer {
     /// Writes a checkpoint.

@@ -30,7 +30,7 @@ pub struct Row {
 const BENDING: &str = "validation_bending";
 
 /// How many times the least E_dist is as good as that.
-const NEAR: f32 = 1.01;
+const NEAR: f32 = 1.02;
 
 /// Ends the name of a loss's column.
 const LOSS: &str = "_loss";
@@ -47,7 +47,8 @@ impl Row {
             return self.distance < kept.distance;
         }
         let near = |row: &Self| row.distance <= NEAR * least;
-        near(self) && (!near(kept) || self.normal < kept.normal)
+        let error = |row: &Self| row.distance * row.normal;
+        near(self) && (!near(kept) || error(self) < error(kept))
     }
 
     /// The mean of the loss of that name.
@@ -56,10 +57,10 @@ impl Row {
     }
 }
 
-/// The best epoch: of those near the least E_dist so far that of the least E_norm; of the least `distance` where nothing
-/// was validated. E_dist soon stands still: by it alone the best is a matter of chance, and later epochs, whose folds
-/// are nearer, are passed over. E_dist times E_norm would keep the smooth cloth of the first epochs where it is hard to
-/// learn (without a skeleton stream). Docs: decisions/training.md
+/// The best epoch: of those near the least E_dist so far that of the least E_dist times E_norm; of the least `distance`
+/// where nothing was validated. E_dist soon stands still: by it alone the best is a matter of chance, and later epochs,
+/// whose folds are nearer, are passed over. The product alone keeps the smooth cloth of a first epoch where distance is
+/// hard to learn, as without a skeleton stream. Docs: decisions/training.md
 pub(super) fn best(rows: &[Row]) -> Option<&Row> {
     let mut least = f32::INFINITY;
     rows.iter().reduce(|kept, row| {
@@ -141,8 +142,9 @@ mod tests {
             best(&rows).map(|best| best.epoch)
         };
         assert_eq!(kept(&[]), None);
-        assert_eq!(kept(&[[0.034, 9.0], [0.020, 12.0], [0.0201, 11.0], [0.0203, 10.0]]), Some(3), "10° is too far off");
-        assert_eq!(kept(&[[0.0201, 11.0], [0.020, 12.0], [0.0198, 11.5]]), Some(3), "the first is no longer near");
+        assert_eq!(kept(&[[0.034, 6.0], [0.020, 12.0], [0.0203, 11.0], [0.0206, 9.0]]), Some(3), "9° is too far off");
+        assert_eq!(kept(&[[0.0203, 10.0], [0.020, 11.1], [0.0198, 11.5]]), Some(3), "the first is no longer near");
+        assert_eq!(kept(&[[0.020, 11.0], [0.0203, 10.9]]), Some(1), "what normals gain is less than is lost");
         assert_eq!(kept(&[[0.9, 0.0], [0.899, 0.0], [0.8995, 0.0]]), Some(2), "without truth");
     }
 
