@@ -59,8 +59,8 @@ impl Row {
 
 /// The best epoch: of those near the least E_dist so far that of the least E_dist times E_norm; of the least `distance`
 /// where nothing was validated. E_dist soon stands still: by it alone the best is a matter of chance, and later epochs,
-/// whose folds are nearer, are passed over. The product alone keeps the smooth cloth of a first epoch where distance is
-/// hard to learn, as without a skeleton stream. Docs: decisions/training.md
+/// whose folds are nearer, are passed over. By the product alone an epoch may be kept that is hardly nearer than plain
+/// skinning, as without a skeleton stream. docs/decisions/training.md
 pub(super) fn best(rows: &[Row]) -> Option<&Row> {
     let mut least = f32::INFINITY;
     rows.iter().reduce(|kept, row| {
