@@ -23,7 +23,8 @@ export default defineConfig({
         test: {
           name: 'simd128',
           include: ['model', 'quality', 'allocation'].map((name) => `web/tests/${name}.test.ts`),
-          setupFiles: ['web/tests/simd128.ts'],
+          setupFiles: ['web/tests/simd128.mjs'],
+          env: { CTSN_SIMD128: 'yes' },
         },
       },
       // The exported network, in another runtime on Node.

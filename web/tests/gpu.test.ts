@@ -5,7 +5,7 @@ import { loadModel, type BackendChoice, type ClothModel, type Frame, type GpuLoa
 import { deviceOf } from 'ctsn/three';
 import { startModule } from '../dist/raw.js';
 import { difference } from '../../tests/browser/safetensors.js';
-import { collectGarbage } from './allocation.js';
+import { collectGarbage } from './garbage.js';
 import { FakeDevice, FakeNavigator, gpu, turn } from './fake-gpu.js';
 import { bytesOf, loadConfident, readGolden } from './golden.js';
 

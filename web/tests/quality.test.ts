@@ -4,7 +4,7 @@ import { afterEach, expect, test, vi } from 'vitest';
 import { loadModel, type ClothModel } from 'ctsn';
 import { Cloth, ClothScheduler } from 'ctsn/three';
 import { Streams } from '../dist/raw.js';
-import { collectGarbage } from './allocation.js';
+import { collectGarbage } from './garbage.js';
 import { characterOf } from './character.js';
 import { FakeDevice, FakeNavigator, gpu } from './fake-gpu.js';
 import { difference } from '../../tests/browser/safetensors.js';

@@ -15,7 +15,7 @@ import {
 import { afterEach, beforeEach, expect, test, vi } from 'vitest';
 import { CtsnError, loadModel, type ModelSource } from 'ctsn';
 import { Wardrobe, type WardrobeOptions, type WearOptions } from 'ctsn/three';
-import { collectGarbage } from './allocation.js';
+import { collectGarbage } from './garbage.js';
 import { characterOf } from './character.js';
 import { bytesOf, loadGolden } from './golden.js';
 
