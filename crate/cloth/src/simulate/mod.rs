@@ -1,6 +1,7 @@
 //! Quasi-static cloth: a garment draped on the canonical body, and brought from there to any pose.
 //! Implicit Newton on the true elastic energy, f64, fixed order of sums: the same pose gives the same bits.
 
+mod bones;
 mod burial;
 mod cloth;
 mod coarse;

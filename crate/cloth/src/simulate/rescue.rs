@@ -60,11 +60,11 @@ impl Simulator {
     }
 
     /// The cloth with every vertex outside that is inside the body and has a way out; what holds those that were let
-    /// go. `None` where too many have no way out: nothing helps them.
+    /// go. `None` where too many have no way out, or a limb is out: nothing helps them.
     pub(super) fn put_out(&self, solver: &Solver, pose: &Pose, to_body: DAffine3) -> Option<(Vec<DVec3>, Vec<Pin>)> {
         let mut placed: Vec<DVec3> = solver.positions.iter().map(|p| to_body.transform_point3(*p)).collect();
-        let Inside { free, pinched, .. } = self.inside(pose, &placed);
-        if free.is_empty() && self.too_pinched(pinched) {
+        let Inside { free, pinched, out, .. } = self.inside(pose, &placed);
+        if out.is_some() || free.is_empty() && self.too_pinched(pinched) {
             return None;
         }
         self.body.lift(pose, &mut placed, FURTHEST, |vertex| free.contains(&vertex));

@@ -3,6 +3,7 @@
 
 use glam::{DAffine3, DVec3};
 
+use super::bones::Bones;
 use super::coarse::{COARSE, COARSER, Coarse};
 use super::collider::Collider;
 use super::cover::{Cover, SLACK};
@@ -37,6 +38,7 @@ pub struct Simulator {
     pub(super) collider: Collider,
     /// The body itself, which no kept pose may enter.
     pub(super) body: BodyDistance,
+    pub(super) bones: Bones,
     pub(super) cover: Cover,
     pub(super) settings: Settings,
 }
@@ -67,8 +69,9 @@ impl Simulator {
         };
         let of = |vertices| fine.cloth.is_fine().then(|| thinned(vertices)).transpose();
         let [coarse, coarser] = [of(COARSE)?, of(COARSER)?];
+        let bones = Bones::new(character, &body, &garment.mesh);
         let character = Character { clips: Vec::new(), surface: Surface::default(), ..character.clone() };
-        Ok(Self { character, rest, level: fine, coarse, coarser, collider, body, cover, settings })
+        Ok(Self { character, rest, level: fine, coarse, coarser, collider, body, bones, cover, settings })
     }
 
     /// Whether the garment has so many vertices that it travels thinned.
@@ -150,7 +153,7 @@ impl Simulator {
         // Vertices that were let go where the body pinches them. Leading them out of the crease afterwards was tried,
         // by contact planes and by springs towards its mouth: the first never came to rest, the second drew as many
         // others in.
-        let Inside { free, pinched, least } = inside;
+        let Inside { free, pinched, least, out } = inside;
         if !free.is_empty() {
             let (free, depth) = (free.len(), -1e3 * least);
             return reject(format!("wanted no vertex inside the body, found {free}, {depth:.2} mm deep"));
@@ -162,6 +165,9 @@ impl Simulator {
                 "wanted at most {wanted} % of the vertices where the body passes into itself, found {found:.2} %"
             ));
         }
+        if let Some(reason) = out {
+            return reject(reason);
+        }
         if crossings > 0 {
             return reject(format!("wanted no cloth through cloth, found {crossings} pairs of triangles that cross"));
         }
@@ -171,11 +177,11 @@ impl Simulator {
         Status::Converged
     }
 
-    /// Vertices (body frame, metres) inside the body in `pose` (world).
+    /// How vertices (body frame, metres) lie wrong to the body in `pose` (world).
     pub(super) fn inside(&self, pose: &Pose, placed: &[DVec3]) -> Inside {
         let skin = self.collider.pose(&self.character.skinning(&to_body_frame(&self.character, pose)));
         let signed = self.body.signed(pose, placed);
-        let mut inside = Inside::default();
+        let mut inside = Inside { out: self.out(pose, placed), ..Inside::default() };
         for (vertex, distance) in signed.into_iter().enumerate().filter(|(_, distance)| *distance < 0.0) {
             if skin.pinches(placed[vertex], PINCH, self.settings.thickness) {
                 inside.pinched += 1;
@@ -199,7 +205,7 @@ impl Simulator {
         outcome
     }
 
-    /// The same, not judged yet, and what of it is inside the body.
+    /// The same, not judged yet, and how it lies to the body.
     pub(super) fn measured(
         &self,
         solver: &Solver,
@@ -253,7 +259,7 @@ impl Simulator {
     }
 }
 
-/// Vertices inside the body.
+/// Vertices inside the body, and limbs outside of the cloth.
 #[derive(Default)]
 pub(super) struct Inside {
     /// Those with a way out.
@@ -262,4 +268,6 @@ pub(super) struct Inside {
     pub pinched: usize,
     /// Least signed distance of the former, metres.
     pub least: f64,
+    /// Which limb has come out through the cloth, if one has.
+    pub out: Option<String>,
 }

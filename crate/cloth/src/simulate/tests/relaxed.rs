@@ -87,3 +87,31 @@ fn layers_that_jam_are_given_up_soon() {
     let most = simulator.settings.relax_iterations / 4;
     assert!(outcome.iterations < most, "wanted below {most} iterations, found {}", outcome.iterations);
 }
+
+/// The skirt with its left half behind the left leg, which comes out through the front.
+fn behind_the_leg(rest: &[DVec3]) -> Vec<DVec3> {
+    let back = |p: &DVec3| 0.3 * (p.x / 0.05).clamp(0.0, 1.0) * ((0.1 - p.y) / 0.1).clamp(0.0, 1.0);
+    rest.iter().map(|p| *p - back(p) * DVec3::Z).collect()
+}
+
+#[test]
+fn cloth_that_a_leg_has_come_out_of_is_no_start() {
+    let (simulator, template, pose, rest) = striding(30, 9);
+    assert_eq!(simulator.out(&pose, &rest), None, "along the path both legs stay in it");
+    let start = behind_the_leg(&rest);
+    let Status::Rejected { reason } = simulator.relax(&template, &pose, &start).status else { panic!("accepted") };
+    assert!(reason.contains("every limb in the cloth") && reason.contains("left thigh"), "{reason}");
+    assert!(simulator.inside(&pose, &start).out.is_some(), "nor would it be kept");
+
+    // Thinned it is carried along the path instead, from where the fine one can be relaxed.
+    let (simulator, template, pose, rest) = striding(96, 30);
+    let start = behind_the_leg(&rest);
+    assert!(simulator.out(&pose, &start).is_some());
+    let coarse = simulator.relax_coarse(&template, &pose, &start).expect("a fine skirt");
+    for outcome in [coarse, simulator.relax(&template, &pose, &start), simulator.try_relax(&template, &pose, &start)] {
+        assert!(outcome.converged(), "{:?}", outcome.status);
+        assert_eq!(simulator.out(&pose, &outcome.positions), None);
+        let off = mean(&outcome.positions, &rest);
+        assert!(off < 0.02, "{off} m from where the path leads");
+    }
+}
