@@ -39,6 +39,7 @@ pub fn dataset(vertices: usize, joints: usize, poses: usize) -> (Setup, Vec<Samp
             rate: 1.0,
             clips: vec!["random".to_owned()],
             joints: (0..joints).map(|j| format!("joint{j}")).collect(),
+            parents: (0..joints).map(|j| j.checked_sub(1)).collect(),
             root: 0,
             inverse_bind: (0..joints)
                 .map(|j| row_major(&DAffine3::from_translation(DVec3::NEG_Y * bone * j as f64)).to_vec())

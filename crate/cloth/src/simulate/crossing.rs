@@ -34,7 +34,12 @@ impl Elements {
 }
 
 /// Whether a segment passes through a triangle.
-pub(super) fn pierces([start, end]: [DVec3; 2], corners: [DVec3; 3]) -> bool {
-    let inside = |at: Meeting| at.u >= 0.0 && at.v >= 0.0 && at.u + at.v <= 1.0 && (0.0..=1.0).contains(&at.along);
-    meet(start, end - start, corners).is_some_and(inside)
+pub(super) fn pierces(ends: [DVec3; 2], corners: [DVec3; 3]) -> bool {
+    pierced(ends, corners).is_some()
+}
+
+/// Where it does.
+pub(super) fn pierced([start, end]: [DVec3; 2], corners: [DVec3; 3]) -> Option<Meeting> {
+    let inside = |at: &Meeting| at.u >= 0.0 && at.v >= 0.0 && at.u + at.v <= 1.0 && (0.0..=1.0).contains(&at.along);
+    meet(start, end - start, corners).filter(inside)
 }

@@ -1,7 +1,10 @@
 //! Signed distances of cloth vertices to the posed body, for judging a prediction as the simulator judges itself.
 
+use std::cell::LazyCell;
+
 use glam::DVec3;
 
+use super::bones::{Bones, places};
 use super::collider::{Collider, joints_near};
 use super::posed::PosedBody;
 use crate::Result;
@@ -27,13 +30,16 @@ pub struct BodyDistance {
     character: Character,
     /// The body's own triangles, not its skin.
     pub(super) collider: Collider,
+    bones: Bones,
 }
 
 impl BodyDistance {
     /// The body of `character` around `garment`, both canonical.
     pub fn new(character: &Character, garment: &Mesh) -> Result<Self> {
         let collider = Collider::new(character, &character.body, garment, REACH)?;
-        Ok(Self { character: character.clone(), collider })
+        let posed = collider.pose(&character.skinning(&to_body_frame(character, &character.canonical_pose())));
+        let bones = Bones::new(character, garment, |point| posed.encloses(point));
+        Ok(Self { character: character.clone(), bones, collider })
     }
 
     /// The body in `pose` (world), in its body frame.
@@ -51,6 +57,14 @@ impl BodyDistance {
             distance => distance,
         };
         vertices.iter().map(signed).collect()
+    }
+
+    /// Name of a joint whose limb has come out through the garment in `pose` (world), if one has; vertices [n], body
+    /// frame, metres.
+    pub fn limb_out(&self, pose: &Pose, vertices: &[DVec3]) -> Option<&str> {
+        let body = LazyCell::new(|| self.posed(pose));
+        let out = self.bones.out(&places(&self.character, pose), vertices, |point| body.encloses(point))?;
+        Some(&self.character.joints[out].name)
     }
 
     /// How many of the cloth's `edges` pass through a face of the body in `pose` (world); vertices [n], body frame,

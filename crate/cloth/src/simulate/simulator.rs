@@ -3,7 +3,6 @@
 
 use glam::{DAffine3, DVec3};
 
-use super::bones::Bones;
 use super::coarse::{COARSE, COARSER, Coarse};
 use super::collider::Collider;
 use super::cover::{Cover, SLACK};
@@ -38,7 +37,6 @@ pub struct Simulator {
     pub(super) collider: Collider,
     /// The body itself, which no kept pose may enter.
     pub(super) body: BodyDistance,
-    pub(super) bones: Bones,
     pub(super) cover: Cover,
     pub(super) settings: Settings,
 }
@@ -53,8 +51,6 @@ impl Simulator {
         let mut skin = outer_skin(character, &character.canonical_pose(), SKIN)?;
         smooth(&mut skin);
         let collider = Collider::new(character, &skin, &garment.mesh, settings.reach)?;
-        let body = BodyDistance::new(character, &garment.mesh)?;
-        let cover = Cover::new(&body.collider, &collider, SLACK);
         let level = |mesh: &Mesh, warp: &[DVec3], attached: &[u32]| {
             Level::new(mesh, warp, &material, &settings, &collider, attached)
         };
@@ -69,9 +65,10 @@ impl Simulator {
         };
         let of = |vertices| fine.cloth.is_fine().then(|| thinned(vertices)).transpose();
         let [coarse, coarser] = [of(COARSE)?, of(COARSER)?];
-        let bones = Bones::new(character, &body, &garment.mesh);
+        let body = BodyDistance::new(character, &garment.mesh)?;
+        let cover = Cover::new(&body.collider, &collider, SLACK);
         let character = Character { clips: Vec::new(), surface: Surface::default(), ..character.clone() };
-        Ok(Self { character, rest, level: fine, coarse, coarser, collider, body, bones, cover, settings })
+        Ok(Self { character, rest, level: fine, coarse, coarser, collider, body, cover, settings })
     }
 
     /// Whether the garment has so many vertices that it travels thinned.
@@ -175,6 +172,12 @@ impl Simulator {
             return reject(format!("stretch: wanted below {}, found {stretch_max:.3}", wanted.stretch_limit));
         }
         Status::Converged
+    }
+
+    /// Which limb has come out through cloth placed so in `pose` (world; body frame [n], metres), if one has.
+    pub(super) fn out(&self, pose: &Pose, placed: &[DVec3]) -> Option<String> {
+        let limb = self.body.limb_out(pose, placed)?;
+        Some(format!("wanted every limb in the cloth, found that at {limb:?} out through it"))
     }
 
     /// How vertices (body frame, metres) lie wrong to the body in `pose` (world).

@@ -32,6 +32,10 @@ pub struct Errors {
     pub depth: f64,
     /// Share of the cloth's edges that pass through a face of the body, mean over frames.
     pub crossing: f64,
+    /// Share of the frames in which a limb has come out through the cloth; zero in what was written before it was
+    /// looked at.
+    #[serde(default)]
+    pub out: f64,
     /// Mean over edges and frames of `|l_p - l_g| / l_rest`: predicted, true and rest length of an edge.
     pub stretch: f64,
     /// Mean acceleration of vertices, m/s²: see [`super::jitter`]; `None` where no three frames follow each other.
@@ -66,6 +70,7 @@ impl Errors {
             penetrating: over(|frame| frame.penetrating).mean,
             depth: frames.iter().map(|frame| frame.depth).fold(0.0, f64::max),
             crossing: over(|frame| frame.crossing).mean,
+            out: over(|frame| f64::from(u8::from(frame.out))).mean,
             stretch: over(|frame| frame.stretch).mean,
             jitter,
             slow_jitter: None,

@@ -30,6 +30,8 @@ pub struct PoseErrors {
     pub depth: f64,
     /// Share of the cloth's edges that pass through a face of the body.
     pub crossing: f64,
+    /// Whether a limb has come out through the cloth.
+    pub out: bool,
     /// Mean over edges of `|l_p - l_g| / l_rest`.
     pub stretch: f64,
 }
@@ -124,7 +126,8 @@ impl<'a> Judge<'a> {
         let edges = self.edges.len() as f64;
         let crossed = self.body.crossed(&pose, predicted, self.edges.iter().map(|(ends, _)| *ends));
         let (penetrating, crossing) = (inside / predicted.len() as f64, crossed as f64 / edges);
-        PoseErrors { distance, normal, penetrating, depth, crossing, stretch: stretch.sum::<f64>() / edges }
+        let out = self.body.limb_out(&pose, predicted).is_some();
+        PoseErrors { distance, normal, penetrating, depth, crossing, out, stretch: stretch.sum::<f64>() / edges }
     }
 
     /// Errors of `run` over the samples in `range`.

@@ -8,12 +8,34 @@ impl std::fmt::Display for Report {
         let left_out = format!("{} poses were left out by the simulation", self.rejected);
         let which = if self.whole { "" } else { "unseen " };
         writeln!(f, "{} on {}: {frames} {which}frames of {clips} clips; {left_out}", self.garment, self.character)?;
-        let heads =
-            ["E_dist mm", "95 %", "E_norm deg", "95 %", "inside %", "depth mm", "cross %", "stretch %", "m/s²", "slow"];
+        let heads = [
+            "E_dist mm",
+            "95 %",
+            "E_norm deg",
+            "95 %",
+            "inside %",
+            "depth mm",
+            "cross %",
+            "out %",
+            "stretch %",
+            "m/s²",
+            "slow",
+        ];
         writeln!(
             f,
-            "{:<16}{:>16}{:>8}{:>16}{:>8}{:>10}{:>10}{:>9}{:>11}{:>8}{:>8}",
-            "", heads[0], heads[1], heads[2], heads[3], heads[4], heads[5], heads[6], heads[7], heads[8], heads[9]
+            "{:<16}{:>16}{:>8}{:>16}{:>8}{:>10}{:>10}{:>9}{:>8}{:>11}{:>8}{:>8}",
+            "",
+            heads[0],
+            heads[1],
+            heads[2],
+            heads[3],
+            heads[4],
+            heads[5],
+            heads[6],
+            heads[7],
+            heads[8],
+            heads[9],
+            heads[10]
         )?;
         for (name, errors) in self.ways() {
             let pair =
@@ -24,8 +46,8 @@ impl std::fmt::Display for Report {
             let [jitter, slow] = [errors.jitter, errors.slow_jitter]
                 .map(|jitter| jitter.map_or("-".to_owned(), |jitter| format!("{jitter:.2}")));
             write!(f, "{name:<16}{distance:>16}{:>8.2}{normal:>16}{:>8.2}", tails.0, tails.1)?;
-            let crossing = errors.crossing * 100.0;
-            writeln!(f, "{inside:>10.3}{depth:>10.1}{crossing:>9.3}{stretch:>11.2}{jitter:>8}{slow:>8}")?;
+            let (crossing, out) = (errors.crossing * 100.0, errors.out * 100.0);
+            writeln!(f, "{inside:>10.3}{depth:>10.1}{crossing:>9.3}{out:>8.1}{stretch:>11.2}{jitter:>8}{slow:>8}")?;
         }
         self.folds(f)?;
         let (share, size, scaled) = (self.ratio * 100.0, self.size, self.network.scaled);

@@ -49,6 +49,9 @@ fn a_moved_and_a_stretched_cloth_have_the_errors_that_were_given_to_them() {
     let outside = change(&|_, position| DVec3::new(2.0 * position.x, position.y, 2.0 * position.z));
     assert!(inside.penetrating > 0.4 && (0.02..0.051).contains(&inside.depth), "{inside:?}");
     assert!(outside.penetrating < 0.1, "{outside:?}");
+    // From half of its length on the tube is beside the body, in the last two of three frames.
+    let beside = change(&|frame, p| p + if frame > 0 { 5.0 * (p.y - 0.75).clamp(0.0, 0.1) } else { 0.0 } * DVec3::X);
+    assert_eq!([moved.out, inside.out, outside.out, beside.out], [0.0, 0.0, 0.0, 2.0 / 3.0]);
 }
 
 #[test]

@@ -9,7 +9,7 @@ use ctsn_train::judging::{Errors, FrameErrors, PoseErrors, Report, Statistic};
 use maud::{Markup, html};
 
 /// What each figure of the page means.
-const MEANINGS: [(&str, &str); 13] = [
+const MEANINGS: [(&str, &str); 14] = [
     (
         "E_dist",
         "Distance between predicted and simulated position, mean over the vertices. Given as mean ± standard deviation \
@@ -26,6 +26,11 @@ const MEANINGS: [(&str, &str); 13] = [
       vertex more than 50 mm behind a face is taken to lie beyond the far side of a limb, and is not counted.",
     ),
     ("crossing", "Share of the cloth's edges that pass through a face of the body, mean over the frames."),
+    (
+        "limbs out",
+        "Share of the frames in which a limb has come out through the cloth, as an arm beside its sleeve: a line from \
+      joint to joint leaves the cloth through itself.",
+    ),
     (
         "stretch",
         "Difference between predicted and simulated edge length, as a share of the length at rest; mean over edges and \
@@ -145,6 +150,7 @@ fn ways(report: &Report) -> Markup {
         "inside, %",
         "depth, mm",
         "crossing, %",
+        "limbs out, %",
         "stretch, %",
         "accel., m/s²",
         "slow",
@@ -160,6 +166,7 @@ fn ways(report: &Report) -> Markup {
             format!("{:.3}", 100.0 * errors.penetrating),
             format!("{:.1}", 1e3 * errors.depth),
             format!("{:.3}", 100.0 * errors.crossing),
+            format!("{:.1}", 100.0 * errors.out),
             format!("{:.2}", 100.0 * errors.stretch),
             acceleration(errors.jitter),
             acceleration(errors.slow_jitter),
