@@ -27,8 +27,9 @@ const ASTRAY: f64 = 0.03;
 impl Simulator {
     /// Relaxes `pose` from `start` (body frame [n]), which may cross itself and the body a little. The equilibrium is
     /// as true as that which [`simulate`](Self::simulate) comes to, but of all there are the one nearest to the start.
-    /// What is left out is tried again once only: a start on the wrong side of a limb stays there. If it still is, a
-    /// fine garment is relaxed once more from where its thinned form comes to rest: it may slide far.
+    /// What is left out is tried again once only: a start on the wrong side of a limb stays there, and one
+    /// that a limb has come out of is none. If it still is, a fine garment is relaxed once more from where its thinned
+    /// form comes to rest: it may slide far.
     pub fn relax(&self, template: &[DVec3], pose: &Pose, start: &[DVec3]) -> Outcome {
         let relax = |start: &[DVec3]| self.relax_for(template, pose, start, self.settings.relax_iterations);
         let outcome = relax(start);
