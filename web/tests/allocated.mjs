@@ -22,7 +22,7 @@ const pose = Float32Array.from(bones.flatMap((bone) => bone.matrix.toArray()));
 const cloth = new Cloth(model, new Group().add(...bones), new MeshBasicMaterial());
 new Group().add(cloth);
 const coarse = { quality: 'coarse' };
-let last;
+let kept;
 
 const kinds = {
   predictCloth() {
@@ -30,7 +30,7 @@ const kinds = {
     model.predictCloth(pose, coarse);
   },
   update: () => cloth.update(),
-  'a small object': () => (last = { before: last?.prediction, prediction: model.predictCloth(pose) }),
+  'a small object': () => (kept = { prediction: model.predictCloth(pose) }),
 };
 const work = kinds[process.argv[2]];
 

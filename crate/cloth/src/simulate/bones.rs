@@ -5,8 +5,7 @@
 use glam::DVec3;
 
 use super::crossing::pierced;
-use ctsn_rig::path::{body_frame, to_body_frame};
-use ctsn_rig::{Character, Mesh, Pose};
+use ctsn_rig::{Character, Mesh};
 
 /// Points of a line that must lie inside the body, its ends among them.
 const POINTS: usize = 5;
@@ -24,10 +23,9 @@ pub(super) struct Bones {
 
 impl Bones {
     /// The lines of `character` inside its body, and how they pass through `garment`, canonical; `encloses`: whether
-    /// a point is in the body in the canonical pose (body frame, metres).
+    /// a point is in the body there.
     pub fn new(character: &Character, garment: &Mesh, encloses: impl Fn(DVec3) -> bool) -> Self {
-        let pose = character.canonical_pose();
-        let (joints, frame) = (places(character, &pose), body_frame(character, &pose));
+        let joints: Vec<DVec3> = character.canonical_pose().iter().map(|joint| joint.translation).collect();
         let inside = |[from, to]: &[usize; 2]| {
             let (from, to) = (joints[*from], joints[*to]);
             (0..POINTS).all(|point| encloses(from.lerp(to, point as f64 / (POINTS - 1) as f64)))
@@ -35,13 +33,12 @@ impl Bones {
         let lines = character.joints.iter().enumerate().filter_map(|(joint, it)| Some([it.parent?, joint]));
         let lines = lines.filter(inside).collect();
         let mut bones = Self { lines, triangles: garment.triangles.clone(), worn: Vec::new() };
-        let placed: Vec<DVec3> = garment.positions.iter().map(|p| frame.transform_point3(*p)).collect();
-        bones.worn = bones.entered(&joints, &placed, encloses);
+        bones.worn = bones.entered(&joints, &garment.positions, encloses);
         bones
     }
 
-    /// A joint whose limb has come out through the garment, if one has: `joints` in the body frame, the garment's
-    /// vertices at `x` [n], and `encloses` the body of that pose.
+    /// A joint whose limb has come out through the garment, if one has: posed `joints`, the garment's vertices at `x`
+    /// [n], and `encloses` the body of that pose.
     pub fn out(&self, joints: &[DVec3], x: &[DVec3], encloses: impl Fn(DVec3) -> bool) -> Option<usize> {
         let entered = self.entered(joints, x, encloses);
         (0..entered.len()).find(|joint| entered[*joint] < self.worn[*joint])
@@ -59,9 +56,4 @@ impl Bones {
         }
         entered
     }
-}
-
-/// Places of the joints in the body frame of a pose (world), metres.
-pub(super) fn places(character: &Character, pose: &Pose) -> Vec<DVec3> {
-    to_body_frame(character, pose).iter().map(|joint| joint.translation).collect()
 }

@@ -4,7 +4,7 @@ use std::cell::LazyCell;
 
 use glam::DVec3;
 
-use super::bones::{Bones, places};
+use super::bones::Bones;
 use super::collider::{Collider, joints_near};
 use super::posed::PosedBody;
 use crate::Result;
@@ -37,8 +37,8 @@ impl BodyDistance {
     /// The body of `character` around `garment`, both canonical.
     pub fn new(character: &Character, garment: &Mesh) -> Result<Self> {
         let collider = Collider::new(character, &character.body, garment, REACH)?;
-        let posed = collider.pose(&character.skinning(&to_body_frame(character, &character.canonical_pose())));
-        let bones = Bones::new(character, garment, |point| posed.encloses(point));
+        let body = PosedBody::new(&collider, collider.body.mesh.positions.clone());
+        let bones = Bones::new(character, garment, |point| body.encloses(point));
         Ok(Self { character: character.clone(), bones, collider })
     }
 
@@ -63,7 +63,8 @@ impl BodyDistance {
     /// frame, metres.
     pub fn limb_out(&self, pose: &Pose, vertices: &[DVec3]) -> Option<&str> {
         let body = LazyCell::new(|| self.posed(pose));
-        let out = self.bones.out(&places(&self.character, pose), vertices, |point| body.encloses(point))?;
+        let joints: Vec<DVec3> = to_body_frame(&self.character, pose).iter().map(|joint| joint.translation).collect();
+        let out = self.bones.out(&joints, vertices, |point| body.encloses(point))?;
         Some(&self.character.joints[out].name)
     }
 

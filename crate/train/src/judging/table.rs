@@ -2,41 +2,30 @@
 
 use super::{Errors, Report, Statistic};
 
+/// Heads of the columns after the first, and their widths.
+const HEADS: [(&str, usize); 11] = [
+    ("E_dist mm", 16),
+    ("95 %", 8),
+    ("E_norm deg", 16),
+    ("95 %", 8),
+    ("inside %", 10),
+    ("depth mm", 10),
+    ("cross %", 9),
+    ("out %", 8),
+    ("stretch %", 11),
+    ("m/s²", 8),
+    ("slow", 8),
+];
+
 impl std::fmt::Display for Report {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let (frames, clips) = (self.frames.len(), self.clips.len());
         let left_out = format!("{} poses were left out by the simulation", self.rejected);
         let which = if self.whole { "" } else { "unseen " };
         writeln!(f, "{} on {}: {frames} {which}frames of {clips} clips; {left_out}", self.garment, self.character)?;
-        let heads = [
-            "E_dist mm",
-            "95 %",
-            "E_norm deg",
-            "95 %",
-            "inside %",
-            "depth mm",
-            "cross %",
-            "out %",
-            "stretch %",
-            "m/s²",
-            "slow",
-        ];
-        writeln!(
-            f,
-            "{:<16}{:>16}{:>8}{:>16}{:>8}{:>10}{:>10}{:>9}{:>8}{:>11}{:>8}{:>8}",
-            "",
-            heads[0],
-            heads[1],
-            heads[2],
-            heads[3],
-            heads[4],
-            heads[5],
-            heads[6],
-            heads[7],
-            heads[8],
-            heads[9],
-            heads[10]
-        )?;
+        write!(f, "{:<16}", "")?;
+        HEADS.iter().try_for_each(|(head, width)| write!(f, "{head:>width$}"))?;
+        writeln!(f)?;
         for (name, errors) in self.ways() {
             let pair =
                 |statistic: Statistic, unit: f64| format!("{:.2} ± {:.2}", statistic.mean * unit, statistic.std * unit);
