@@ -21,6 +21,8 @@ const UPRIGHT: f64 = 0.9;
 pub(super) const SLACK: f64 = 0.004;
 /// Rounds of raising: corners move along their own normals, which covers a point between them only in part.
 const ROUNDS: usize = 2;
+/// So little above a face what lies over it is looked for, metres.
+const ABOVE: f64 = 0.001;
 
 /// The points of the body that its skin must cover.
 pub(super) struct Cover {
@@ -57,14 +59,7 @@ impl Cover {
     pub fn heights(&self, body: &PosedBody, skin: &Collider, skinning: &[DAffine3]) -> Vec<f64> {
         let mut heights = vec![0.0f64; skin.body.weights.len()];
         for _ in 0..ROUNDS {
-            let posed = skin.raised(skinning, &heights, 1.0);
-            let out = |point: &Point| {
-                let place = body.point(point.face, point.barycentric);
-                let hit = posed.closest_around(place, point.skin, FURTHEST)?;
-                (hit.distance > self.slack && hit.normal.dot(posed.normal(hit.face)) > UPRIGHT)
-                    .then_some((hit.face, hit.distance.min(2.0 * (hit.distance - self.slack))))
-            };
-            let out: Vec<(u32, f64)> = self.points.iter().filter_map(out).collect();
+            let out = self.out(body, &skin.raised(skinning, &heights, 1.0));
             if out.is_empty() {
                 break;
             }
@@ -76,6 +71,19 @@ impl Cover {
             }
         }
         heights
+    }
+
+    /// Faces of the `skin`, and how far what is seen of the body comes out through each, metres. What lies inside of
+    /// the body is no part of what is seen: an arm in the chest drew the chest's skin into itself, by up to 80 mm.
+    fn out(&self, body: &PosedBody, skin: &PosedBody) -> Vec<(u32, f64)> {
+        let out = |point: &Point| {
+            let place = body.point(point.face, point.barycentric);
+            let hit = skin.closest_around(place, point.skin, FURTHEST)?;
+            let out = hit.distance > self.slack && hit.normal.dot(skin.normal(hit.face)) > UPRIGHT;
+            (out && !body.is_within(point.face, ABOVE))
+                .then_some((hit.face, hit.distance.min(2.0 * (hit.distance - self.slack))))
+        };
+        self.points.iter().filter_map(out).collect()
     }
 }
 

@@ -21,6 +21,9 @@ const DEPTH_ELSEWHERE: f64 = 0.012;
 /// Two sides of a crease differ by at least the angle with this cosine.
 const CREASE: f64 = 0.75;
 
+/// A direction without symmetry: rays along body axes run through edges.
+const RAY: DVec3 = DVec3::new(0.8313, 0.2231, 0.5090);
+
 /// Which faces a search considers.
 #[derive(Clone, Copy)]
 enum Faces {
@@ -121,14 +124,23 @@ impl<'a> PosedBody<'a> {
     pub fn is_buried(&self, face: u32, gap: f64) -> bool {
         let known = &self.buried[face as usize];
         known.get().unwrap_or_else(|| {
-            let [a, b, c] = self.corners(face);
-            let above = (a + b + c) / 3.0 + self.face_normals[face as usize] * gap;
-            // A direction without symmetry: rays along body axes run through edges.
-            let direction = DVec3::new(0.8313, 0.2231, 0.5090);
-            let buried = winding(&self.tree, above, direction, |face| self.corners(face)) != 0;
+            let buried = self.winding(face, gap, RAY) != 0;
             known.set(Some(buried));
             buried
         })
+    }
+
+    /// Whether the place `gap` metres above a face is inside the body, by rays both ways: a single one may enter an
+    /// open shell unseen.
+    pub fn is_within(&self, face: u32, gap: f64) -> bool {
+        [RAY, -RAY].iter().all(|ray| self.winding(face, gap, *ray) > 0)
+    }
+
+    /// Winding number of the body about the place `gap` metres above a face, by a ray.
+    fn winding(&self, face: u32, gap: f64, ray: DVec3) -> i32 {
+        let [a, b, c] = self.corners(face);
+        let above = (a + b + c) / 3.0 + self.face_normals[face as usize] * gap;
+        winding(&self.tree, above, ray, |face| self.corners(face))
     }
 
     /// Whether a point is inside the body, by the solid angle of its faces (generalised winding number, Jacobson et al.

@@ -69,6 +69,26 @@ fn skin_is_raised_over_what_comes_out_through_it() {
     assert!(raised > 10 && highest < 0.006, "{raised} raised, still {:.1} mm out", 1e3 * highest);
 }
 
+/// A third ball, that moves over what comes out of the first.
+#[test]
+fn skin_is_not_raised_over_what_lies_inside_of_another_part() {
+    let mut character = nested();
+    let mut other = sphere(0.1, 4);
+    other.positions.iter_mut().for_each(|place| place.x += 0.6);
+    character.joints.push(ctsn_rig::Joint { name: "other".into(), parent: Some(0), ..character.joints[0].clone() });
+    character.body.extend(SkinnedMesh { weights: vec![vec![(2, 1.0)]; other.positions.len()], mesh: other });
+    let skin = outer_skin(&character, &character.canonical_pose(), SKIN).unwrap();
+    let [body, skin] = [&character.body, &skin].map(|mesh| Collider::of_joints(mesh, &[true; 3]));
+    let cover = Cover::new(&body, &skin, SLACK);
+    let raised = |other: f64| {
+        let skinning = [0.0, 0.055, other].map(|shift| DAffine3::from_translation(DVec3::X * shift));
+        let heights = cover.heights(&body.pose(&skinning), &skin, &skinning);
+        heights.iter().filter(|height| **height > 0.0).count()
+    };
+    let [beside, over] = [0.0, -0.4].map(raised);
+    assert!(beside > 10 && over == 0, "{beside} raised, {over} below the other");
+}
+
 #[test]
 fn a_coarse_skin_is_raised_over_what_it_cuts_off() {
     // A thumb of 4 mm radius on a ball.
