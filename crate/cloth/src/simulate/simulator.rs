@@ -217,20 +217,17 @@ impl Simulator {
         to_body: DAffine3,
     ) -> (Outcome, Inside) {
         let from_body = to_body.inverse();
-        let crossings = |positions: &[DVec3]| self.level.cloth.elements.crossings(positions).len();
-        let at_rest: Vec<DVec3> = solver.positions.iter().map(|p| to_body.transform_point3(*p)).collect();
-        let mut placed = at_rest.clone();
-        let mut lifted = self.body.lift(pose, &mut placed, self.settings.lift, |_| true);
-        let mut positions: Vec<DVec3> = placed.iter().map(|p| from_body.transform_point3(*p)).collect();
-        // Between two parts of the body what is lifted from one may be laid on the wrong side of a fold.
-        if lifted == 0 || crossings(&positions) > crossings(&solver.positions) {
-            (lifted, placed, positions) = (0, at_rest, solver.positions.clone());
-        }
+        let mut placed: Vec<DVec3> = solver.positions.iter().map(|p| to_body.transform_point3(*p)).collect();
+        let lifted = self.lift(pose, &mut placed);
+        let positions: Vec<DVec3> = match lifted {
+            0 => solver.positions.clone(),
+            _ => placed.iter().map(|p| from_body.transform_point3(*p)).collect(),
+        };
         let (stretch_p99, stretch_max) = stretch(&self.level.cloth, &positions);
         let outcome = Outcome {
             residual: relaxed.residual,
             drift: relaxed.drift,
-            crossings: crossings(&positions),
+            crossings: self.level.cloth.elements.crossings(&positions).len(),
             stretch_p99,
             stretch_max,
             least_distance: relaxed.least_distance,
@@ -240,6 +237,28 @@ impl Simulator {
             positions,
         };
         (outcome, self.inside(pose, &placed))
+    }
+
+    /// Moves vertices (body frame, metres) that the body in `pose` (world) pinches out of it; how many. Between two
+    /// parts of the body what is lifted from one may be laid on the wrong side of a fold: such vertices stay.
+    pub(super) fn lift(&self, pose: &Pose, placed: &mut [DVec3]) -> usize {
+        let at_rest = placed.to_vec();
+        let lifted = self.body.lift(pose, placed, self.settings.lift, |_| true);
+        if lifted == 0 {
+            return 0;
+        }
+        let elements = &self.level.cloth.elements;
+        let before = elements.crossings(&at_rest);
+        loop {
+            let crossings = elements.crossings(placed);
+            let new = crossings.iter().filter(|pair| before.binary_search(pair).is_err()).flatten();
+            let corners = new.flat_map(|triangle| elements.triangles[*triangle as usize]).map(|corner| corner as usize);
+            let back: Vec<usize> = corners.filter(|corner| placed[*corner] != at_rest[*corner]).collect();
+            if back.is_empty() {
+                return placed.iter().zip(&at_rest).filter(|(now, then)| now != then).count();
+            }
+            back.into_iter().for_each(|vertex| placed[vertex] = at_rest[vertex]);
+        }
     }
 
     /// An outcome for input that cannot be simulated: the garment as given.

@@ -74,8 +74,8 @@ fn a_fine_skirt_is_laid_where_its_coarse_one_comes_to_rest() {
     assert!(outcome.positions.iter().all(|p| p.is_finite()), "finite in every case");
 }
 
-/// Waves of 12 cm fold the skirt into itself. Of 48 starts (10 to 16 cm, 60 to 93 in place of 87) this and one other jam;
-/// a limb comes out of 16, and the rest came to rest within 158 iterations.
+/// Waves of 12 cm fold the skirt into itself. Of 48 starts (10 to 16 cm, 60 to 93 in place of 87) this and one other
+/// jam, a limb is out of 16, and the others come to rest within 158 iterations.
 #[test]
 fn layers_that_jam_are_given_up_soon() {
     let (simulator, template, pose, rest) = striding(30, 9);

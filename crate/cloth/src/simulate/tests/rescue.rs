@@ -1,17 +1,14 @@
 //! Cloth that was pulled into the body is put out of it before a pose is given up.
 
-use glam::DAffine3;
+use glam::{DAffine3, DVec3};
 
+use super::pose::simulator;
 use super::scene::{legs, skirt};
-use crate::simulate::{Material, Settings, Simulator};
-use ctsn_rig::Garment;
 
 #[test]
 fn cloth_in_the_body_is_put_outside_and_the_rest_stays() {
     let character = legs();
-    let garment = Garment { mesh: skirt(30, 9), ..Garment::default() };
-    let settings = Settings { attached: (0..30).collect(), ..Settings::default() };
-    let simulator = Simulator::new(&character, &garment, Material::default(), settings).unwrap();
+    let simulator = simulator(&character, skirt(30, 9), 30).unwrap();
     let pose = character.canonical_pose();
     let rest = simulator.simulate(&simulator.drape().unwrap(), &pose).positions;
     let distances = simulator.body.signed(&pose, &rest);
@@ -41,4 +38,48 @@ fn cloth_in_the_body_is_put_outside_and_the_rest_stays() {
     let outcome = simulator.relax(&simulator.drape().unwrap(), &pose, &start);
     assert!(outcome.converged(), "{:?}", outcome.status);
     assert!(simulator.inside(&pose, &outcome.positions).free.is_empty());
+}
+
+/// A triangle of elsewhere stands beside one of three vertices that are 3 mm inside: lifted, its cloth would cross it.
+#[test]
+fn what_would_cross_cloth_is_not_lifted_and_all_else_is() {
+    let character = legs();
+    let triangles = skirt(30, 9).triangles;
+    let simulator = simulator(&character, skirt(30, 9), 30).unwrap();
+    let pose = character.canonical_pose();
+    let rest = simulator.simulate(&simulator.drape().unwrap(), &pose).positions;
+    let distances = simulator.body.signed(&pose, &rest);
+    let mut low: Vec<usize> = (90..rest.len()).collect();
+    low.sort_by(|a, b| distances[*a].total_cmp(&distances[*b]));
+    let mut pushed = vec![low[0]];
+    for vertex in low {
+        if pushed.iter().all(|other| rest[*other].distance(rest[vertex]) > 0.08) {
+            pushed.push(vertex);
+        }
+    }
+    pushed.truncate(3);
+    let inwards = |vertex: usize| {
+        let place = rest[vertex];
+        (place.with_z(0.0).with_x(0.085 * place.x.signum()) - place).normalize()
+    };
+    let mut start = rest.clone();
+    pushed.iter().for_each(|&vertex| start[vertex] += inwards(vertex) * (distances[vertex] + 0.003));
+    assert_eq!(simulator.lift(&pose, &mut start.clone()), 3);
+
+    let vertex = pushed[0];
+    let beside = triangles.iter().find(|corners| corners.contains(&(vertex as u32))).unwrap();
+    let neighbour = *beside.iter().find(|corner| **corner != vertex as u32).unwrap() as usize;
+    let far = |corners: &&[u32; 3]| corners.iter().all(|corner| rest[*corner as usize].distance(rest[vertex]) > 0.2);
+    let outwards = -inwards(vertex);
+    let surface = rest[vertex] - outwards * distances[vertex];
+    let along = (rest[neighbour] - surface).reject_from(outwards).normalize();
+    let across = along.cross(outwards);
+    let blade: [DVec3; 3] = [(-0.004, 1e-4), (0.004, 1e-4), (0.0, 0.02)]
+        .map(|(aside, height)| surface + along * 0.003 + across * aside + outwards * height);
+    for (corner, place) in triangles.iter().find(far).unwrap().iter().zip(blade) {
+        start[*corner as usize] = place;
+    }
+    let mut lifted = start.clone();
+    assert_eq!(simulator.lift(&pose, &mut lifted), 2);
+    assert!(lifted[vertex] == start[vertex] && pushed[1..].iter().all(|other| lifted[*other] != start[*other]));
 }
