@@ -13,8 +13,6 @@ struct Params {
     steepest: f32,
     sliver: f32,
     folded: f32,
-    // Where buried vertices are.
-    away: f32,
     // The body's first vertices, spread evenly over it.
     landmarks: u32,
     free: f32,
@@ -23,7 +21,7 @@ struct Params {
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
-// Exposed body: positions and unit normals [b, 3].
+// Posed body: positions and unit normals [b, 3].
 @group(0) @binding(1) var<storage, read> body: array<f32>;
 @group(0) @binding(2) var<storage, read> body_normals: array<f32>;
 // First triangle around each body vertex [b + 1], and the other two corners of each.
@@ -51,11 +49,6 @@ fn is_elsewhere(place: f32, found: f32) -> bool {
     return place > bound * bound;
 }
 
-// A corner of a triangle around a vertex: the vertex itself where the corner is buried.
-fn corner(vertex: u32, other: u32) -> u32 {
-    return select(other, vertex, body[3u * other] >= params.away);
-}
-
 // The displacement out of reach, and the squared distance to the body around a place. (Parted in two functions, or with
 // the highest corner sought here instead of on the walk, a software adapter took 5 ms instead of 2.)
 fn push_from(point: vec3<f32>, place: Place) -> vec4<f32> {
@@ -68,7 +61,7 @@ fn push_from(point: vec3<f32>, place: Place) -> vec4<f32> {
     var foot = vec3(0.0);
     var corners = vec2(vertex);
     for (var k = offsets[vertex]; k < offsets[vertex + 1u]; k++) {
-        let others = vec2(corner(vertex, fans[k].x), corner(vertex, fans[k].y));
+        let others = fans[k];
         let ab = position(others.x) - a;
         let ac = position(others.y) - a;
         let spot = closest(point - a, ab, ac);
@@ -84,7 +77,7 @@ fn push_from(point: vec3<f32>, place: Place) -> vec4<f32> {
     let up = steep / max(length, 1e-30);
     let along_up = dot(point - foot, up);
     let beside = least > params.gap * params.gap && abs(along_up) < params.steepest * sqrt(least);
-    let found = best.x < 3.4e38 && a.x < params.away && length > params.folded && !beside && along_up >= -params.depth;
+    let found = best.x < 3.4e38 && length > params.folded && !beside && along_up >= -params.depth;
     let height = select(along_up, sqrt(least), along_up > 0.0);
     return select(vec4(0.0, 0.0, 0.0, 3.4e38), vec4(up * max(params.reach - height, 0.0), least), found);
 }

@@ -31,7 +31,7 @@ fn downhill(point: vec3<f32>, start: u32, distance_squared: f32) -> Place {
         for (var k = offsets[before]; k < offsets[before + 1u]; k++) {
             let vertex = fans[k].x;
             let found = squared(point - position(vertex));
-            top = max(top, dot(position(corner(before, vertex)) - position(before), normal(before)));
+            top = max(top, dot(position(vertex) - position(before), normal(before)));
             best = select(best, vertex, found < least);
             least = min(least, found);
         }

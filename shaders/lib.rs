@@ -82,8 +82,6 @@ params! {
     Blend { numbers: u32, count: u32, stride: u32 }
     /// `Params` of body_frame.wgsl.
     BodyFrame { joints: u32, root: u32, yaw: u32 }
-    /// `Params` of bury.wgsl.
-    Bury { vertices: u32, first: u32, end: u32, above: f32, least: f32, away: f32 }
     /// `Params` of collide.wgsl and settle.wgsl.
     Collide {
         vertices: u32,
@@ -95,7 +93,6 @@ params! {
         steepest: f32,
         sliver: f32,
         folded: f32,
-        away: f32,
         landmarks: u32,
         free: f32,
         elsewhere: f32,
@@ -155,9 +152,7 @@ shaders! {
     BLEND: Blend, "blend" + [], [Read Read Read Read Write Write], [64, 1];
     /// Joints, inverse bind, standard -> transforms, pose vector.
     BODY_FRAME: BodyFrame, "body_frame" + [], [Read Read Read Write Write], [64, 1];
-    /// Body, its normals, areas -> exposed.
-    BURY: Bury, "bury" + [], [Read Read Read Write], [1, 1];
-    /// Exposed body, its normals, offsets, fans, seeds, positions -> push.
+    /// Posed body, its normals, offsets, fans, seeds, positions -> push.
     COLLIDE: Collide, "collide" + ["collide.foot", "collide.walk", "collide.triangle"], [Read Read Read Read Read Read Write], [64, 1];
     /// V, T_C -> nodes, potentials.
     FEATURES: Features, "features" + [], [Read Read Write Write], [64, 1];
@@ -175,7 +170,7 @@ shaders! {
     PULL: Pull, "pull" + [], [Read Read Read Read Read Write], [64, 1];
     /// Corners, coordinates, positions, normals -> riders.
     RIDE: Ride, "ride" + [], [Read Read Read Read Write], [64, 1];
-    /// Exposed body, its normals, offsets, fans, seeds, displacement -> positions.
+    /// Posed body, its normals, offsets, fans, seeds, displacement -> positions.
     SETTLE: Collide, "settle" + ["collide.foot", "collide.walk", "collide.triangle"], [Read Read Read Read Read Read Write], [64, 1];
     /// Rest, joints, weights, transforms -> positions.
     SKIN: Skin, "skin" + [], [Read Read Read Read Write], [64, 1];

@@ -1,9 +1,9 @@
 //! A body one part of which lies inside another.
 
 use crate::sphere::{RADIUS, length, model};
-use ctsn_core::cpu::repair::bury::nested;
 use ctsn_core::cpu::repair::collide::LANDMARKS;
 use ctsn_core::model::HostModel;
+use ctsn_core::suite::sphere;
 use fastrand::Rng;
 use std::ops::Range;
 
@@ -11,6 +11,19 @@ use std::ops::Range;
 const INNER: Range<usize> = LANDMARKS..LANDMARKS + 62;
 /// How far it is raised inside the other, metres.
 const RAISED: f32 = 0.03;
+
+/// A sphere of 100 mm and one of 50, raised by so much, whose vertices follow the landmarks: positions, triangles.
+fn nested(raised: f32) -> (Vec<f32>, Vec<u32>) {
+    let (outer, outer_faces) = sphere(0.1, 24, 13);
+    let (inner, inner_faces) = sphere(0.05, 10, 7);
+    let count = (inner.len() / 3) as u32;
+    let raised = inner.chunks_exact(3).flat_map(|p| [p[0], p[1] + raised, p[2]]);
+    let (first, rest) = outer.split_at(3 * LANDMARKS);
+    let positions = first.iter().copied().chain(raised).chain(rest.iter().copied());
+    let place = |i: &u32| if (*i as usize) < LANDMARKS { *i } else { *i + count };
+    let triangles = outer_faces.iter().map(place).chain(inner_faces.iter().map(|i| i + LANDMARKS as u32));
+    (positions.collect(), triangles.collect())
+}
 
 /// The cloth, just outside the smaller sphere and inside the other, has all its seeds on the smaller but the last.
 pub fn buried(rng: &mut Rng) -> HostModel {

@@ -10,7 +10,6 @@
 #[macro_use]
 mod list;
 
-use crate::cpu::repair::bury::buriable;
 use crate::pose::Rig;
 use std::sync::Arc;
 
@@ -246,24 +245,12 @@ operations! { $
         drawn_normals: W,
     }
 
-    /// Puts the body's vertices that lie inside another part of it far away, where no cloth meets them.
-    Bury<R, W> {
-        /// Posed body [b, 3].
-        posed: R,
-        /// Its unit normals [b, 3].
-        normals: R,
-        /// Canonical areas, square metres [b].
-        areas: R,
-        /// [b, 3].
-        exposed: W,
-    }
-
     /// How far each cloth vertex must move to lie so far above the body; zero where there is room.
     Collide<R, W, I> {
         /// How far, metres.
         reach: f32,
-        /// The body as [`Bury`] leaves it [b, 3].
-        exposed: R,
+        /// Posed body [b, 3].
+        posed: R,
         /// Its unit normals [b, 3].
         normals: R,
         /// Where the triangles around each body vertex start [b + 1].
@@ -315,8 +302,8 @@ operations! { $
 
     /// Displaces the cloth, and brings to its gap what that carried into another part of the body.
     Settle<R, W, I> {
-        /// The body as [`Bury`] leaves it [b, 3].
-        exposed: R,
+        /// Posed body [b, 3].
+        posed: R,
         /// Its unit normals [b, 3].
         normals: R,
         /// Where the triangles around each body vertex start [b + 1].
@@ -366,7 +353,6 @@ impl Operation<usize, usize, usize> {
             // Two sums of three vectors, the length of one, and the offset.
             Self::Ride(it) => 15 * it.riders,
             Self::Surface(_) => 0,
-            Self::Bury(it) => buriable(it.areas).len() * it.areas * 18,
             // A walk, and six triangles around its end.
             Self::Collide(it) => it.positions / 3 * (WALK + 6 * 60),
             Self::Spread(it) => 3 * it.neighbours + 20 * (it.push / 3),

@@ -29,7 +29,6 @@ pub mod network {
 
 /// The repair of penetration, which comes after it.
 pub mod repair {
-    pub mod bury;
     pub mod closest;
     pub mod collide;
     pub mod eight;
@@ -53,7 +52,6 @@ pub struct Cpu {
     /// One for each thread.
     scratch: Vec<Scratch>,
     rings: repair::rings::Rings,
-    dipoles: repair::bury::Dipoles,
 }
 
 /// Room of one thread.
@@ -82,9 +80,9 @@ impl Cpu {
 
     /// A chosen level on chosen threads.
     pub fn with_threads(level: Level, threads: Threads) -> Self {
-        let (panels, rings, dipoles) = Default::default();
+        let (panels, rings) = Default::default();
         let scratch = (0..threads.count()).map(|_| Scratch::default()).collect();
-        Self { level, threads, panels, scratch, rings, dipoles }
+        Self { level, threads, panels, scratch, rings }
     }
 
     /// The threads that operations are shared out over.

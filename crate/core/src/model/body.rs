@@ -6,7 +6,6 @@ use super::Skinning;
 use super::write::Writer;
 use crate::Result;
 use crate::file::Tensors;
-use glam::Vec3;
 
 /// Most triangles around a vertex: the search for the closest point walks around vertices, for each of the cloth's.
 const MOST_AROUND: u32 = 256;
@@ -16,16 +15,12 @@ const MOST_AROUND: u32 = 256;
 pub struct Body<B, I> {
     /// `b`: vertices.
     pub vertices: usize,
-    /// Canonical positions, metres [b, 3]; first [`LANDMARKS`](crate::cpu::repair::collide::LANDMARKS) that lie evenly,
-    /// then those that may be inside another part of the body, at most
-    /// [`BURIABLE`](crate::cpu::repair::bury::BURIABLE).
+    /// Canonical positions, metres [b, 3]; first [`LANDMARKS`](crate::cpu::repair::collide::LANDMARKS) that lie evenly.
     pub rest: B,
     /// Skin weights.
     pub skinning: Skinning<B, I>,
     /// Triangles [t, 3].
     pub triangles: I,
-    /// Canonical area of each vertex, square metres: a third of its triangles' [b].
-    pub areas: B,
     /// The triangles around each body vertex.
     pub fans: Fans<I>,
     /// Body vertices near which each cloth vertex was in training [n, s]; the last on the other side of a crease, or
@@ -57,25 +52,12 @@ impl Fans<Vec<u32>> {
     }
 }
 
-/// Area of each vertex: a third of its triangles', zero where `f32` cannot hold it; positions [b, 3], triangles [t, 3]
-/// -> [b].
-pub fn areas(positions: &[f32], triangles: &[u32]) -> Vec<f32> {
-    let mut areas = vec![0.0; positions.len() / 3];
-    for triangle in triangles.as_chunks::<3>().0 {
-        let [a, b, c] = triangle.map(|i| Vec3::from_slice(&positions[3 * i as usize..]));
-        let third = (b - a).cross(c - a).length() / 6.0;
-        triangle.iter().for_each(|i| areas[*i as usize] += third);
-    }
-    areas.iter_mut().filter(|area| !area.is_finite()).for_each(|area| *area = 0.0);
-    areas
-}
-
 impl Body<Vec<f32>, Vec<u32>> {
     /// A body of vertices `rest` [b, 3], of `triangles` [t, 3] whose corners are below b; `seeds` [n, s] likewise.
     pub fn new(rest: Vec<f32>, skinning: Skinning<Vec<f32>, Vec<u32>>, triangles: Vec<u32>, seeds: Vec<u32>) -> Self {
         let vertices = rest.len() / 3;
-        let (areas, fans) = (areas(&rest, &triangles), Fans::new(vertices, &triangles));
-        Self { vertices, rest, skinning, triangles, areas, fans, seeds }
+        let fans = Fans::new(vertices, &triangles);
+        Self { vertices, rest, skinning, triangles, fans, seeds }
     }
 
     /// The body of a file for `n` cloth vertices and `joints` joints; `None` where it has none.
@@ -128,7 +110,6 @@ impl<B, I> Body<B, I> {
             rest: values(&self.rest),
             skinning: self.skinning.map(values, indices),
             triangles: indices(&self.triangles),
-            areas: values(&self.areas),
             fans: Fans { offsets: indices(&self.fans.offsets), corners: indices(&self.fans.corners) },
             seeds: indices(&self.seeds),
         }

@@ -12,7 +12,7 @@ mod write;
 
 use crate::pose::Rig;
 use crate::topology::Graph;
-pub use body::{Body, Fans, areas};
+pub use body::{Body, Fans};
 pub use cut::{Cut, MOST_STEPS, STEPS};
 pub use ride::Ride;
 use std::sync::Arc;

@@ -8,7 +8,7 @@ mod polish;
 use crate::device::Device;
 use crate::model::{HostModel, Model, Skinning, surroundings};
 use crate::operation::{self, BodyFrame, Normals, Space};
-pub use collide::{Collision, collide, expose, push, stand};
+pub use collide::{Collision, collide, pose_body, push, stand};
 pub(crate) use embedding::skeleton;
 pub use graph::graph_layer;
 pub(crate) use graph::mesh;

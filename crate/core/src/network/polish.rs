@@ -10,7 +10,7 @@ use crate::topology::Graph;
 pub fn polish<D: Device>(device: &mut D, model: &DeviceModel<D>, a: &mut Activations<D::Buffer>) {
     let (Some(cut), Some(Polishing { pulls, diffused, moves, near })) = (&model.cut, &mut a.polish) else { return };
     if let (Some(body), Some(c), 1..) = (&model.body, &a.collision, cut.steps) {
-        push(device, body, REACH, [&c.exposed, &c.normals, &a.positions], near);
+        push(device, body, REACH, [&c.body, &c.normals, &a.positions], near);
         device.run(Normals { positions: &a.positions, triangles: &model.triangles, normals: &mut a.normals }.into());
     }
     let Graph { offsets, neighbours } = &model.graph;

@@ -3,40 +3,16 @@
 use super::{Id, IndexId, Record, Recorder};
 use crate::pack;
 use crate::recording::Operand;
-use ctsn_core::cpu::repair::{bury, closest, collide, eight, settle, slide, spread};
-use ctsn_core::operation::{Bury, Collide, Settle, Slide, Spread};
+use ctsn_core::cpu::repair::{closest, collide, eight, settle, slide, spread};
+use ctsn_core::operation::{Collide, Settle, Slide, Spread};
 use ctsn_shaders as shaders;
-
-impl Record for Bury<Id, Id> {
-    fn record(self, recorder: &mut Recorder) {
-        let Self { posed, normals, areas, exposed } = self;
-        let operands = [
-            recorder.rows(posed, 3, 3),
-            recorder.rows(normals, 3, 3),
-            recorder.rows(areas, 1, 1),
-            recorder.rows(exposed, 3, 3),
-        ];
-        let vertices = recorder.length(areas);
-        let range = bury::buriable(vertices);
-        let params = shaders::Bury {
-            vertices: vertices as u32,
-            first: range.start as u32,
-            end: range.end as u32,
-            above: bury::ABOVE,
-            least: bury::least(),
-            away: bury::AWAY,
-        };
-        recorder.dispatch(&shaders::BURY, params, &operands, [range.len().max(1), 1], exposed);
-    }
-}
 
 impl Record for Collide<Id, Id, IndexId> {
     fn record(self, recorder: &mut Recorder) {
-        let Self { reach, exposed, normals, offsets, corners, seeds, positions, push } = self;
-        let (operands, params) =
-            search(recorder, reach, [exposed, normals, positions, push], [offsets, corners, seeds]);
+        let Self { reach, posed, normals, offsets, corners, seeds, positions, push } = self;
+        let (operands, params) = search(recorder, reach, [posed, normals, positions, push], [offsets, corners, seeds]);
         let n = params.vertices as usize;
-        recorder.dispatch(&shaders::COLLIDE, params, &operands, [n, 1], exposed);
+        recorder.dispatch(&shaders::COLLIDE, params, &operands, [n, 1], posed);
     }
 }
 
@@ -82,26 +58,26 @@ impl Record for Slide<Id, Id, IndexId> {
 
 impl Record for Settle<Id, Id, IndexId> {
     fn record(self, recorder: &mut Recorder) {
-        let Self { exposed, normals, offsets, corners, seeds, displacement, positions } = self;
-        let buffers = [exposed, normals, displacement, positions];
+        let Self { posed, normals, offsets, corners, seeds, displacement, positions } = self;
+        let buffers = [posed, normals, displacement, positions];
         let (operands, params) = search(recorder, closest::GAP, buffers, [offsets, corners, seeds]);
         let n = params.vertices as usize;
-        recorder.dispatch(&shaders::SETTLE, params, &operands, [n, 1], exposed);
+        recorder.dispatch(&shaders::SETTLE, params, &operands, [n, 1], posed);
     }
 }
 
-/// A search over the exposed body: its positions and normals, a number per coordinate of the cloth, and such numbers
+/// A search over the posed body: its positions and normals, a number per coordinate of the cloth, and such numbers
 /// that are written.
 fn search(
     recorder: &mut Recorder,
     reach: f32,
-    [exposed, normals, cloth, output]: [Id; 4],
+    [posed, normals, cloth, output]: [Id; 4],
     [offsets, corners, seeds]: [IndexId; 3],
 ) -> ([Operand; 7], shaders::Collide) {
     let n = recorder.length(cloth) / 3;
     let width = recorder.indices(seeds).len() / n;
     let operands = [
-        recorder.rows(exposed, 3, 3),
+        recorder.rows(posed, 3, 3),
         recorder.rows(normals, 3, 3),
         recorder.indexed(offsets),
         recorder.indexed(corners),
@@ -119,8 +95,7 @@ fn search(
         steepest: closest::STEEPEST,
         sliver: eight::SLIVER,
         folded: closest::FOLDED,
-        away: bury::AWAY,
-        landmarks: collide::LANDMARKS.min(recorder.length(exposed) / 3) as u32,
+        landmarks: collide::LANDMARKS.min(recorder.length(posed) / 3) as u32,
         free: collide::FREE,
         elsewhere: collide::ELSEWHERE,
         again: settle::AGAIN,

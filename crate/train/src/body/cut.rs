@@ -3,9 +3,8 @@
 use super::seeds::SEEDS;
 use ctsn_core::cpu::repair::collide::LANDMARKS;
 use ctsn_core::model::{Body, Skinning};
-use ctsn_rig::{Character, Mesh, SkinnedMesh};
+use ctsn_rig::{Mesh, SkinnedMesh};
 use glam::DVec3;
-use std::cmp::Reverse;
 
 /// Puts places that lie evenly over the skin first in `list`, as cloth far from its seeds is searched from there:
 /// always the one furthest from those before.
@@ -22,24 +21,11 @@ pub(super) fn landmarks_first(positions: &[DVec3], list: &mut [usize]) {
     }
 }
 
-/// The kept vertices of the skin, whose triangles are theirs: landmarks, which no pose looked at buries beside cloth,
-/// then what is buried most, then the others.
-pub(super) fn cut(
-    skin: &SkinnedMesh,
-    character: &Character,
-    kept: &[bool],
-    seeds: &[[u32; SEEDS]],
-    buried: &[usize],
-) -> Body<Vec<f32>, Vec<u32>> {
+/// The kept vertices of the skin, whose triangles are theirs: landmarks, then the others.
+pub(super) fn cut(skin: &SkinnedMesh, kept: &[bool], seeds: &[[u32; SEEDS]]) -> Body<Vec<f32>, Vec<u32>> {
     let Mesh { positions, triangles } = &skin.mesh;
-    let (mut list, inside): (Vec<usize>, Vec<usize>) =
-        (0..kept.len()).filter(|i| kept[*i]).partition(|i| buried[*i] == 0);
+    let mut list: Vec<usize> = (0..kept.len()).filter(|i| kept[*i]).collect();
     landmarks_first(positions, &mut list);
-    list.extend(inside);
-    let others = LANDMARKS.min(list.len());
-    // What is pressed into the figure pushes its cloth, not the other way round.
-    let is_obstacle = |vertex: usize| skin.weights[vertex].iter().any(|(joint, _)| character.is_obstacle(*joint));
-    list[others..].sort_by_cached_key(|vertex| (is_obstacle(*vertex), Reverse(buried[*vertex])));
     let mut place = vec![0; kept.len()];
     list.iter().enumerate().for_each(|(new, old)| place[*old] = new as u32);
     let triangles: Vec<u32> = triangles.iter().flatten().map(|i| place[*i as usize]).collect();

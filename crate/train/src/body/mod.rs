@@ -1,7 +1,6 @@
 //! The body a model carries for the repair of penetration: the character's outer skin, as much of it as the cloth comes
 //! near, and for every cloth vertex the places where it was seen. docs/decisions/repair.md.
 
-mod buried;
 mod cut;
 mod seeds;
 mod seen;
@@ -11,7 +10,6 @@ mod tests;
 
 use crate::Result;
 use crate::dataset::{Sample, Setup};
-use buried::buried;
 use ctsn_cloth::simulate::{covering, felt, fitted, outer_skin};
 use ctsn_cloth::wrap::apart;
 use ctsn_core::cpu::repair::closest::GAP;
@@ -36,8 +34,6 @@ const POSES: usize = 600;
 const BENT: usize = 60;
 /// Poses whose cloth the skin is fitted to, spread over the samples.
 const WORN: usize = 150;
-/// Poses that are searched for skin inside another part of the body, spread over the samples.
-const CREASED: usize = 150;
 
 /// The body for the cloth of `setup`, as `samples` wear it. It is fitted to those whose cloth was simulated finely,
 /// `fine`: coarse cloth, and what nobody simulated, may lie in it where it should not.
@@ -69,8 +65,7 @@ pub fn body(setup: &Setup, samples: &[&Sample], fine: &[&Sample]) -> Result<Body
     add_other_side(&mut seeds, &missed, &Graph::new(setup.template.len() / 3, &setup.triangles));
     let kept = kept(&skin, &visits, &seeds);
     skin.mesh.triangles.retain(|triangle| triangle.iter().all(|i| kept[*i as usize]));
-    let buried = buried(&skin, &character, &every(CREASED).collect::<Vec<_>>());
-    Ok(cut(&skin, &character, &kept, &seeds, &buried))
+    Ok(cut(&skin, &kept, &seeds))
 }
 
 /// At most so many of them, spread over them all.

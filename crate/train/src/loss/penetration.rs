@@ -7,7 +7,7 @@ use super::{Loss, Prediction, Term};
 use ctsn_core::cpu::Cpu;
 use ctsn_core::cpu::repair::closest::GAP;
 use ctsn_core::model::{Body, HostModel};
-use ctsn_core::network::{expose, push};
+use ctsn_core::network::{pose_body, push};
 use ctsn_core::operation::Space;
 use ctsn_core::pose::BodyFrame;
 
@@ -34,7 +34,6 @@ pub(super) struct Penetration {
     cpu: Cpu,
     posed: Vec<f32>,
     normals: Vec<f32>,
-    exposed: Vec<f32>,
     cloth: Vec<f32>,
     push: Vec<f32>,
 }
@@ -48,15 +47,15 @@ impl Penetration {
     /// Room for a body and its cloth.
     fn new(body: &Body<Vec<f32>, Vec<u32>>, n: usize) -> Self {
         let room = |vertices: usize| vec![0.0; vertices * 3];
-        let [posed, normals, exposed] = std::array::from_fn(|_| room(body.vertices));
-        Self { body: body.clone(), cpu: Cpu::new(), posed, normals, exposed, cloth: room(n), push: room(n) }
+        let [posed, normals] = std::array::from_fn(|_| room(body.vertices));
+        Self { body: body.clone(), cpu: Cpu::new(), posed, normals, cloth: room(n), push: room(n) }
     }
 
     /// What each vertex of `predicted` [n, 3] lacks to the gap around the body posed last [n, 3].
     pub fn lacks(&mut self, predicted: &[f32]) -> &[f32] {
-        let Self { body, cpu, normals, exposed, cloth, push: lacks, .. } = self;
+        let Self { body, cpu, posed, normals, cloth, push: lacks } = self;
         cloth.copy_from_slice(predicted);
-        push(cpu, body, GAP, [exposed, normals, cloth], lacks);
+        push(cpu, body, GAP, [posed, normals, cloth], lacks);
         lacks
     }
 }
@@ -64,8 +63,8 @@ impl Penetration {
 impl Loss for Penetration {
     /// Poses the body.
     fn pose(&mut self, body_frame: &BodyFrame) {
-        let Self { body, cpu, posed, normals, exposed, .. } = self;
-        expose(cpu, body, &body_frame.transforms, Space::Body, [posed, normals, exposed]);
+        let Self { body, cpu, posed, normals, .. } = self;
+        pose_body(cpu, body, &body_frame.transforms, Space::Body, [posed, normals]);
     }
 
     /// Mean over the vertices of what `predicted` lacks to the gap around the body.

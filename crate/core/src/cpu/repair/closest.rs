@@ -1,6 +1,5 @@
 //! The closest point of a posed body, searched over its surface. Twins: shaders/collide.foot.wgsl, collide.walk.wgsl.
 
-use super::bury::is_away;
 use super::eight::{closest_on_triangles, dot, from, least, place_of_least, splat};
 use super::rings::{RING, Rings};
 use fearless_simd::{Select, Simd, SimdBase, f32x8, u32x8};
@@ -22,7 +21,7 @@ pub const FOLDED: f32 = 1e-3;
 
 /// The posed body: positions and unit normals [b, 3], and the triangles around each vertex.
 pub struct Posed<'a> {
-    /// Positions, metres [b, 3]; those of [`is_away`] are not looked at.
+    /// Positions, metres [b, 3].
     pub positions: &'a [[f32; 3]],
     /// Unit vertex normals [b, 3].
     pub normals: &'a [[f32; 3]],
@@ -192,9 +191,6 @@ impl<'a> Posed<'a> {
     #[inline(always)]
     fn closest<S: Simd>(&self, simd: S, point: Vec3, vertex: u32) -> Option<(Vec3, Vec3)> {
         let a = self.position(vertex);
-        if is_away(&self.positions[vertex as usize]) {
-            return None;
-        }
         let mut best = (f32::INFINITY, [vertex; 2], [0.0; 2]);
         let fans = self.fan(vertex).chunks(RING);
         for ((ring, third), fan) in self.rings.of(vertex).iter().zip(self.rings.thirds(vertex)).zip(fans) {
@@ -208,11 +204,6 @@ impl<'a> Posed<'a> {
             }
         }
         let (_, [second, third], [b, c]) = best;
-        // In place of a buried corner stands the vertex itself; what share it has is left to rounding.
-        let [second, third] = [second, third].map(|corner| match is_away(&self.positions[corner as usize]) {
-            true => vertex,
-            false => corner,
-        });
         let way = (self.position(second) - a) * b + (self.position(third) - a) * c;
         let sum = self.normal(vertex) * (1.0 - b - c) + self.normal(second) * b + self.normal(third) * c;
         // Where a body is folded onto itself it has no outside.

@@ -26,9 +26,9 @@ pub const ELSEWHERE: f32 = 0.1;
 
 impl Kernel for Collide<&[f32], &mut [f32], &[u32]> {
     fn run(self, cpu: &mut Cpu) {
-        let Self { reach, exposed, normals, offsets, corners, seeds, positions, push } = self;
+        let Self { reach, posed, normals, offsets, corners, seeds, positions, push } = self;
         let (level, rings) = (cpu.level, &mut cpu.rings);
-        let body = &dispatch!(level, simd => Posed::new(simd, reach, [exposed, normals], [offsets, corners], rings));
+        let body = &dispatch!(level, simd => Posed::new(simd, reach, [posed, normals], [offsets, corners], rings));
         let n = positions.len() / 3;
         let width = seeds.len() / n.max(1);
         cpu.threads.share(n, [push], &mut cpu.scratch, |rows, [push], _| {
@@ -128,16 +128,16 @@ impl crate::suite::Suite for Collide<Vec<f32>, Vec<f32>, Vec<u32>> {
 
     fn operands(rng: &mut fastrand::Rng) -> Vec<Self> {
         let scene = suite::Scene::new(rng, 300);
-        let suite::Scene { exposed, normals, offsets, corners, seeds, positions, .. } = scene;
+        let suite::Scene { posed, normals, offsets, corners, seeds, positions, .. } = scene;
         let push = vec![0.5; positions.len()];
-        let whole = Self { reach: GAP, exposed, normals, offsets, corners, seeds, positions, push };
+        let whole = Self { reach: GAP, posed, normals, offsets, corners, seeds, positions, push };
         // No triangles: nothing to keep out of.
         let bare = Self { offsets: vec![0; whole.offsets.len()], corners: Vec::new(), ..whole.clone() };
         vec![Self { reach: 0.01, ..whole.clone() }, whole, bare]
     }
 
     fn truth(&self) -> Vec<Option<Vec<f64>>> {
-        let body = suite::Wide::new(self.reach, [&self.exposed, &self.normals], [&self.offsets, &self.corners]);
+        let body = suite::Wide::new(self.reach, [&self.posed, &self.normals], [&self.offsets, &self.corners]);
         let points = crate::suite::points(&self.positions);
         let push = |point: &glam::DVec3| {
             body.foot(*point, body.nearest(*point)).map_or(glam::DVec3::ZERO, |found| found.1).to_array()
@@ -156,7 +156,7 @@ pub(super) mod suite {
 
     /// A sphere, and points in and around it whose seeds are near.
     pub struct Scene {
-        pub exposed: Vec<f32>,
+        pub posed: Vec<f32>,
         pub normals: Vec<f32>,
         pub offsets: Vec<u32>,
         pub corners: Vec<u32>,
@@ -166,11 +166,11 @@ pub(super) mod suite {
 
     impl Scene {
         pub fn new(rng: &mut fastrand::Rng, count: usize) -> Self {
-            let (exposed, triangles) = sphere(0.05, 24, 13);
-            let normals = exposed.iter().map(|c| c / 0.05).collect();
-            let Fans { offsets, corners } = Fans::new(exposed.len() / 3, &triangles);
+            let (posed, triangles) = sphere(0.05, 24, 13);
+            let normals = posed.iter().map(|c| c / 0.05).collect();
+            let Fans { offsets, corners } = Fans::new(posed.len() / 3, &triangles);
             let (mut positions, mut seeds) = (Vec::new(), Vec::new());
-            let body = points(&exposed);
+            let body = points(&posed);
             while positions.len() < 3 * count {
                 let point = DVec3::from_array(std::array::from_fn(|_| 0.16 * (rng.f64() - 0.5)));
                 if !(0.025..0.08).contains(&point.length()) {
@@ -181,7 +181,7 @@ pub(super) mod suite {
                 positions.extend(point.as_vec3().to_array());
                 seeds.extend((0..4).map(|_| near[rng.usize(..20)]));
             }
-            Self { exposed, normals, offsets, corners, seeds, positions }
+            Self { posed, normals, offsets, corners, seeds, positions }
         }
     }
 

@@ -1,7 +1,6 @@
 //! What lies around each vertex of the posed body, in whole vectors: the search over the body looks at all triangles
 //! around a vertex at once.
 
-use super::bury::is_away;
 use super::eight::{Eight, Packed, dot, from, greatest, splat};
 use fearless_simd::Simd;
 use glam::Vec3;
@@ -10,7 +9,7 @@ use glam::Vec3;
 pub const RING: usize = 8;
 
 /// The second corners of up to eight triangles around a vertex: all its neighbours. The vertex itself stands in for a
-/// missing triangle and for a buried corner.
+/// missing triangle.
 #[derive(Clone, Default)]
 pub struct Ring {
     /// Which they are.
@@ -103,9 +102,8 @@ impl Rings {
 /// Up to eight triangles around a vertex.
 #[inline(always)]
 fn fill(vertex: u32, fan: &[[u32; 2]], positions: &[[f32; 3]], ring: &mut Ring, third: &mut Packed) {
-    let seen = |corner: u32| if is_away(&positions[corner as usize]) { vertex } else { corner };
     for place in 0..RING {
-        let [b, c] = fan.get(place).map_or([vertex; 2], |corners| corners.map(seen));
+        let [b, c] = fan.get(place).copied().unwrap_or([vertex; 2]);
         ring.vertices[place] = b;
         let [b, c] = [b, c].map(|corner| positions[corner as usize]);
         for axis in 0..3 {

@@ -18,10 +18,10 @@ pub const AGAIN: f32 = 5e-4;
 /// behind.
 impl Kernel for Settle<&[f32], &mut [f32], &[u32]> {
     fn run(self, cpu: &mut Cpu) {
-        let Self { exposed, normals, offsets, corners, seeds, displacement, positions } = self;
+        let Self { posed, normals, offsets, corners, seeds, displacement, positions } = self;
         let rings = &mut cpu.rings;
         dispatch!(cpu.level, simd => {
-            let body = Posed::new(simd, GAP, [exposed, normals], [offsets, corners], rings);
+            let body = Posed::new(simd, GAP, [posed, normals], [offsets, corners], rings);
             kernel(simd, displacement, &body, seeds, positions);
         });
     }
@@ -63,16 +63,15 @@ impl crate::suite::Suite for Settle<Vec<f32>, Vec<f32>, Vec<u32>> {
 
     fn operands(rng: &mut fastrand::Rng) -> Vec<Self> {
         let scene = super::collide::suite::Scene::new(rng, 300);
-        let super::collide::suite::Scene { exposed, normals, offsets, corners, seeds, positions } = scene;
+        let super::collide::suite::Scene { posed, normals, offsets, corners, seeds, positions } = scene;
         // Some move too little for a second look.
         let mut displacement = crate::suite::numbers(rng, positions.len(), 0.005);
         displacement.as_chunks_mut::<3>().0.iter_mut().step_by(3).for_each(|by| *by = by.map(|c| 0.05 * c));
-        vec![Self { exposed, normals, offsets, corners, seeds, displacement, positions }]
+        vec![Self { posed, normals, offsets, corners, seeds, displacement, positions }]
     }
 
     fn truth(&self) -> Vec<Option<Vec<f64>>> {
-        let body =
-            super::collide::suite::Wide::new(GAP, [&self.exposed, &self.normals], [&self.offsets, &self.corners]);
+        let body = super::collide::suite::Wide::new(GAP, [&self.posed, &self.normals], [&self.offsets, &self.corners]);
         let look = |point: glam::DVec3| {
             let vertex = body.nearest(point);
             let beside = body.around(vertex).iter().filter_map(|others| body.foot(point, others[0] as usize));

@@ -56,9 +56,9 @@ fn a_loss_behind_what_has_no_gradient_is_refused() {
     };
     assert!(refusal(normals).contains("Normals"));
     let collide = |tape: &mut Tape, positions: &Id, push: &mut Id| {
-        let (exposed, normals) = (&tape.buffer(&[0.0; 9]), &tape.buffer(&[0.0; 9]));
+        let (posed, normals) = (&tape.buffer(&[0.0; 9]), &tape.buffer(&[0.0; 9]));
         let [offsets, corners, seeds] = &[&[0, 2, 4, 6][..], &[1, 2, 2, 0, 0, 1], &[0; 5]].map(|it| tape.indices(it));
-        tape.run(Collide { reach: 0.002, exposed, normals, offsets, corners, seeds, positions, push }.into());
+        tape.run(Collide { reach: 0.002, posed, normals, offsets, corners, seeds, positions, push }.into());
     };
     assert!(refusal(collide).contains("Collide"));
     let skin_to = |tape: &mut Tape, rest: &Id, space: Space, positions: &mut Id| {
