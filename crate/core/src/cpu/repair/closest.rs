@@ -171,6 +171,8 @@ impl<'a> Posed<'a> {
     /// - to keep deep vertices on one side of a thin leg, the side of the first seed's normal, of the cloth's own
     ///   normal or of the neighbours' pushes: no steadier, as cloth that a leg passes through must change sides
     ///   somewhere;
+    /// - to take skin that is inside another part of the body out of the search: cloth in an armpit was thrown out
+    ///   by 20 to 80 mm; or to leave cloth beside it where it is: more stayed inside (docs/decisions/repair.md);
     /// - to push straight to the closest point, not along the interpolated normal: cloth trembles much more (8 %
     ///   instead of 5 and of 2 %).
     #[inline(always)]
