@@ -16,9 +16,10 @@ const FURTHEST: f64 = 0.04;
 /// Cosine of the greatest angle between the way from the skin to a point and the skin's normal: the skin does not end
 /// there.
 const UPRIGHT: f64 = 0.9;
-/// What may stay outside of a fine skin, metres: cloth keeps its thickness from it. From there to twice as far out the
-/// skin is raised more and more, without a jump, until it covers the point.
-pub(super) const SLACK: f64 = 0.004;
+/// What may stay outside of a fine skin, metres, well below the 4 mm that cloth keeps from it: tight cloth is pressed
+/// in, and its triangles are chords. (With 4 mm a T-shirt's sleeves were slit, and skin showed.) From there to twice as
+/// far out the skin is raised more and more, without a jump, until it covers the point.
+pub(super) const SLACK: f64 = 0.001;
 /// Rounds of raising: corners move along their own normals, which covers a point between them only in part.
 const ROUNDS: usize = 2;
 /// So little above a face what lies over it is looked for, metres.
