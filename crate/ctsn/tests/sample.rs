@@ -14,7 +14,7 @@ fn folder() -> std::path::PathBuf {
 #[test]
 fn the_sample_keeps_what_a_dataset_promises() {
     let report = Report::new(&folder()).expect("a report");
-    assert_eq!((report.kept, report.left_out.len(), report.vertices), (2, 2, 592));
+    assert_eq!((report.kept, report.left_out.len(), report.vertices), (3, 1, 602));
     assert_eq!((report.penetration.vertices, report.crossings), (0, 0));
     assert!(report.least_distance > 0.0 && report.stretch.max < 1.5, "{report}");
     assert!(report.residual.max < 1e-2 || report.drift.max < 0.1, "{report}");
@@ -27,14 +27,14 @@ fn the_simulator_still_finds_the_sample_s_truth() {
     let character = setup.character().expect("a character");
     let simulator = Simulator::new(&character, &setup.garment(), Material::default(), Settings::default());
     let simulator = simulator.expect("a simulator");
-    for sample in &samples[..2] {
+    for sample in &samples {
         let outcome = simulator.simulate(&vertices(&setup.template), &pose(&sample.joints));
         assert!(outcome.converged(), "{:?}", outcome.status);
         let wanted = vertices(&sample.truth);
         let mean =
             outcome.positions.iter().zip(&wanted).map(|(a, b)| a.distance(*b)).sum::<f64>() / wanted.len() as f64;
         println!("clip {} frame {}: {:.4} mm from the sample", sample.record.clip, sample.record.frame, 1e3 * mean);
-        // The sample holds the body in f32, and half a degree of pose moves the truth by some 5 mm.
+        // The sample holds the body in f32. That alone moves these by a millimetre, others by up to 7 mm.
         assert!(mean < 3e-3, "clip {}: {:.2} mm from the sample", sample.record.clip, 1e3 * mean);
     }
 }
