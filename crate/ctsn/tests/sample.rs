@@ -34,7 +34,7 @@ fn the_simulator_still_finds_the_sample_s_truth() {
         let mean =
             outcome.positions.iter().zip(&wanted).map(|(a, b)| a.distance(*b)).sum::<f64>() / wanted.len() as f64;
         println!("clip {} frame {}: {:.4} mm from the sample", sample.record.clip, sample.record.frame, 1e3 * mean);
-        // The sample holds the body in f32. That alone moves these by a millimetre, others by up to 7 mm.
+        // The sample holds the body in f32. From that these come out a millimetre aside, others by up to 7 mm.
         assert!(mean < 3e-3, "clip {}: {:.2} mm from the sample", sample.record.clip, 1e3 * mean);
     }
 }
