@@ -67,7 +67,7 @@ fn skin_is_raised_over_what_comes_out_through_it() {
     let (raised, highest) = out(0.055);
     // Without raising, the inner ball is 25 mm out.
     assert!(raised > 10 && highest < 0.006, "{raised} raised, still {:.1} mm out", 1e3 * highest);
-    // Without raising, 2 mm: a tight sleeve is pressed in by as much.
+    // Without raising, 2 mm, which may show through a tight sleeve.
     let (raised, highest) = out(0.0345);
     assert!(raised > 0 && highest < 0.001, "{raised} raised, still {:.1} mm out", 1e3 * highest);
 }
