@@ -21,6 +21,8 @@ pub(super) struct Cloth {
     pub gap: f64,
     /// Stiffness of that barrier, N/m.
     pub repulsion: f64,
+    /// The face of the body each vertex is worn on, if it is near one [n].
+    pub worn: Vec<Option<u32>>,
 }
 
 /// Largest [`Cloth::gap`], metres, and its largest share of the mean edge: a fine mesh folds more tightly.
@@ -53,6 +55,7 @@ impl Cloth {
             gap: GAP.min(GAP_SHARE * edge),
             repulsion: REPULSION * mass,
             friction: material.friction,
+            worn: vec![None; rest.len()],
             elastic,
         })
     }

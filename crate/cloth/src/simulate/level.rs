@@ -37,7 +37,8 @@ impl Level {
         collider: &Collider,
         attached: &[u32],
     ) -> Result<Self> {
-        let cloth = Cloth::new(mesh, warp, material, settings.shape)?;
+        let mut cloth = Cloth::new(mesh, warp, material, settings.shape)?;
+        cloth.worn = worn(collider, &mesh.positions);
         // Fewer springs that hold as much in all.
         let attachment = settings.attachment * (settings.attached.len() as f64 / attached.len().max(1) as f64);
         Ok(Self {
@@ -62,6 +63,15 @@ impl Level {
         };
         solver.pins = self.attached.iter().map(pin).collect();
     }
+}
+
+/// How far from the body a vertex may be that is worn on it, metres.
+const WORN: f64 = 0.12;
+
+/// The face of the body that each vertex is worn on, if it is near one.
+fn worn(collider: &Collider, rest: &[DVec3]) -> Vec<Option<u32>> {
+    let body = PosedBody::new(collider, collider.body.mesh.positions.clone());
+    rest.iter().map(|x| Some(body.closest(*x, None, WORN)?.face)).collect()
 }
 
 /// Attached vertices with the skin of the body point closest to them.

@@ -74,7 +74,7 @@ pub(super) struct Solver<'a> {
     contacts: Vec<Contact>,
     /// Vertices held in place.
     pub pins: Vec<Pin>,
-    /// Whether the body is at rest: what it pinches then stays let go.
+    /// Whether the body is at rest: what it has no room for then stays so.
     resting: bool,
     /// Whether the Hessian is exact rather than convexified.
     exact: bool,
@@ -83,10 +83,12 @@ pub(super) struct Solver<'a> {
     gradient: Vec<DVec3>,
     /// Contact stiffness per mass, 1/s² [n].
     stiffness: Vec<f64>,
-    /// Vertices let go because the body has no room for them [n].
+    /// Vertices that the body has no room for [n]: only the side they are worn on holds them.
     pinched: Vec<bool>,
     /// Planes of the body each vertex has met where it is [n].
     touches: Vec<Vec<Touch>>,
+    /// The plane that holds each of them [n].
+    sides: Vec<Option<Touch>>,
     /// How many planes each has met since the body came to rest [n].
     met: Vec<u32>,
     /// Lower bound of the distance to the body [n].
@@ -117,6 +119,7 @@ impl<'a> Solver<'a> {
             pinched: vec![false; n],
             touches: vec![Vec::new(); n],
             met: vec![0; n],
+            sides: vec![None; n],
             clearance: vec![0.0; n],
         }
     }
@@ -126,10 +129,16 @@ impl<'a> Solver<'a> {
         self.clearance.fill(0.0);
         self.pinched.fill(false);
         self.touches.iter_mut().for_each(Vec::clear);
+        self.sides.fill(None);
     }
 
-    /// Whether a vertex was let go because the body has no room for it.
-    pub fn is_let_go(&self, vertex: usize) -> bool {
+    /// Whether a vertex is held by one side of the body alone, for want of room.
+    pub fn is_held(&self, vertex: usize) -> bool {
+        self.pinched[vertex] && self.sides[vertex].is_some()
+    }
+
+    /// Whether the body has no room for a vertex.
+    pub fn has_no_room(&self, vertex: usize) -> bool {
         self.pinched[vertex]
     }
 

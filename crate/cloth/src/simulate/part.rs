@@ -50,6 +50,7 @@ impl Cloth {
         elastic.hinges.iter_mut().for_each(|h| h.vertices = h.vertices.map(|v| local[v]));
         let mapped = self.elements.triangles.iter().map(|t| t.map(|v| local[v as usize] as u32));
         let whole: Vec<[u32; 3]> = mapped.filter(|t| t.iter().all(|&v| v != u32::MAX)).collect();
-        Self { elements: Elements::new(&whole, vertices.len()), elastic, ..*self }
+        let worn = vertices.iter().map(|&v| self.worn[v]).collect();
+        Self { elements: Elements::new(&whole, vertices.len()), elastic, worn, ..*self }
     }
 }

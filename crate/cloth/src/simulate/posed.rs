@@ -33,6 +33,8 @@ enum Faces {
     Across(DVec3),
     /// Those of the part this face belongs to.
     Around(u32),
+    /// Those of the side this face belongs to.
+    Side,
 }
 
 /// The closest point of the body.
@@ -108,6 +110,11 @@ impl<'a> PosedBody<'a> {
     /// The closest point of the part that `face` belongs to, within `reach` metres.
     pub fn closest_around(&self, point: DVec3, face: u32, reach: f64) -> Option<Hit> {
         self.search(point, None, reach, Faces::Around(face))
+    }
+
+    /// The closest point of the side of the part that `face` belongs to, within `reach` metres.
+    pub fn closest_on_side(&self, point: DVec3, face: u32, reach: f64) -> Option<Hit> {
+        self.search(point, Some(face), reach, Faces::Side)
     }
 
     /// Unit normal of a face.
@@ -206,6 +213,7 @@ impl<'a> PosedBody<'a> {
         let refused = match faces {
             Faces::All => false,
             Faces::Around(centre) => !self.collider.near(centre, face),
+            Faces::Side => !own,
             // Behind a face turned all the way round is not a crease but the far side of a thin part.
             Faces::Across(first) => !(if behind { -CREASE } else { -1.0 }..CREASE).contains(&first.dot(normal)),
         };

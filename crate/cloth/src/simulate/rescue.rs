@@ -1,7 +1,7 @@
-//! Poses that would be left out for a few vertices. Where the body passes into itself cloth is let go, and tight cloth
-//! then pulls it on, deep into a knee and out of the crease's reach. Such vertices are put out of the body again and
-//! held there, as what grips them would; what crosses is smoothed apart; and the cloth is relaxed once more.
-//! simulation.md §2.3.
+//! Poses that would be left out for a few vertices. Where the body passes into itself cloth is held softly, by one side
+//! of it, and tight cloth may pull it on, deep into a knee and out of the crease's reach. Such vertices are put out of
+//! the body again and held there, as what grips them would; what crosses is smoothed apart; and the cloth is relaxed
+//! once more. simulation.md §2.3.
 
 use glam::{DAffine3, DVec3};
 
@@ -59,11 +59,11 @@ impl Simulator {
         outcome
     }
 
-    /// The cloth with every vertex outside that is inside the body and has a way out; what holds those that were let
-    /// go. `None` where too many have no way out, or a limb is out: nothing helps them.
+    /// The cloth with every vertex outside that is inside the body and has a way out; what holds those that it had no
+    /// room for. `None` where too many have no way out, or a limb is out: nothing helps them.
     pub(super) fn put_out(&self, solver: &Solver, pose: &Pose, to_body: DAffine3) -> Option<(Vec<DVec3>, Vec<Pin>)> {
         let mut placed: Vec<DVec3> = solver.positions.iter().map(|p| to_body.transform_point3(*p)).collect();
-        let Inside { free, pinched, out, .. } = self.inside(pose, &placed);
+        let Inside { free, pinched, out, .. } = self.inside(pose, &placed, |vertex| solver.is_held(vertex));
         if out.is_some() || free.is_empty() && self.too_pinched(pinched) {
             return None;
         }
@@ -71,7 +71,7 @@ impl Simulator {
         let from_body = to_body.inverse();
         let mut positions = solver.positions.clone();
         free.iter().for_each(|&vertex| positions[vertex] = from_body.transform_point3(placed[vertex]));
-        let held = free.into_iter().filter(|&vertex| solver.is_let_go(vertex));
+        let held = free.into_iter().filter(|&vertex| solver.has_no_room(vertex));
         let held = held.map(|vertex| Pin { vertex, target: positions[vertex], stiffness: GRIP }).collect();
         Some((positions, held))
     }

@@ -27,7 +27,7 @@ const PINCH: f64 = 0.025;
 /// Simulates one garment on one character. Built once, used from any number of threads.
 pub struct Simulator {
     pub(super) character: Character,
-    rest: Vec<DVec3>,
+    pub(super) rest: Vec<DVec3>,
     pub(super) level: Level,
     /// What a fine garment travels as.
     pub(super) coarse: Option<(Coarse, Level)>,
@@ -147,7 +147,7 @@ impl Simulator {
         if let Some(reason) = self.unrest(outcome) {
             return reject(reason);
         }
-        // Vertices that were let go where the body pinches them. Leading them out of the crease afterwards was tried,
+        // Vertices that the body had no room for. Leading them out of the crease afterwards was tried,
         // by contact planes and by springs towards its mouth: the first never came to rest, the second drew as many
         // others in.
         let Inside { free, pinched, least, out } = inside;
@@ -180,13 +180,14 @@ impl Simulator {
         Some(format!("wanted every limb in the cloth, found that at {limb:?} out through it"))
     }
 
-    /// How vertices (body frame, metres) lie wrong to the body in `pose` (world).
-    pub(super) fn inside(&self, pose: &Pose, placed: &[DVec3]) -> Inside {
+    /// How vertices (body frame, metres) lie wrong to the body in `pose` (world); which of them are `held` by one side
+    /// of it, for want of room.
+    pub(super) fn inside(&self, pose: &Pose, placed: &[DVec3], held: impl Fn(usize) -> bool) -> Inside {
         let skin = self.collider.pose(&self.character.skinning(&to_body_frame(&self.character, pose)));
         let signed = self.body.signed(pose, placed);
         let mut inside = Inside { out: self.out(pose, placed), ..Inside::default() };
         for (vertex, distance) in signed.into_iter().enumerate().filter(|(_, distance)| *distance < 0.0) {
-            if skin.pinches(placed[vertex], PINCH, self.settings.thickness) {
+            if held(vertex) || skin.pinches(placed[vertex], PINCH, self.settings.thickness) {
                 inside.pinched += 1;
             } else {
                 inside.free.push(vertex);
@@ -236,7 +237,8 @@ impl Simulator {
             status: Status::Converged,
             positions,
         };
-        (outcome, self.inside(pose, &placed))
+        let inside = self.inside(pose, &placed, |vertex| solver.is_held(vertex));
+        (outcome, inside)
     }
 
     /// Moves vertices (body frame, metres) that the body in `pose` (world) pinches out of it; how many. Between two

@@ -52,7 +52,7 @@ const RATE: f64 = 10.0;
 const APART: f64 = 0.03;
 
 /// Share of the vertices that may lie where the body passes into itself.
-pub const PINCHED: f64 = 0.03;
+pub const PINCHED: f64 = 0.1;
 
 /// Which poses, of what cloth.
 #[derive(clap::Args, Clone)]

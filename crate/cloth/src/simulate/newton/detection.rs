@@ -1,5 +1,5 @@
-//! Where the cloth touches the body: contact planes of one iteration, and the vertices that are let go because no place
-//! is outside all of the body.
+//! Where the cloth touches the body: contact planes of one iteration, and the vertices that one side of it alone holds
+//! because no place is outside all of the body.
 
 use glam::DVec3;
 
@@ -9,6 +9,8 @@ use crate::simulate::posed::{Hit, PosedBody};
 
 /// A vertex further than this beyond the contact offset is not looked at, metres.
 const MARGIN: f64 = 0.015;
+/// How far from the side it is worn on a vertex without room is held by it, metres.
+const SIDE: f64 = 0.05;
 /// Factor by which a contact that gave way too far is stiffened, and how often it may be.
 const STIFFENING: f64 = 3.0;
 const STIFFEST: f64 = 30.0;
@@ -19,7 +21,7 @@ const MEMORY: f64 = 0.001;
 /// Planes whose normals have a larger cosine are one side of the body.
 const SAME_SIDE: f64 = 0.95;
 
-/// Planes a vertex may meet once the body is at rest before it is let go: among fingers it jumps from one to the next
+/// Planes a vertex may meet once the body is at rest before there is no room for it: among fingers it jumps from one to the next
 /// for good.
 const MOST_MET: u32 = 12;
 /// Planes whose normals have a smaller cosine face each other.
@@ -35,6 +37,13 @@ pub(super) struct Touch {
     at: DVec3,
 }
 
+impl Touch {
+    /// The plane at `hit` of a vertex at `at`.
+    fn new(hit: &Hit, at: DVec3) -> Self {
+        Self { normal: hit.normal, plane: hit.normal.dot(at) - hit.distance, at }
+    }
+}
+
 impl Solver<'_> {
     /// Finds the contact planes; the least signed distance of a vertex that is not pinched.
     pub(super) fn detect(&mut self, body: Option<&PosedBody>) -> f64 {
@@ -44,7 +53,11 @@ impl Solver<'_> {
         self.contacts.clear();
         let Some(body) = body else { return least };
         for i in 0..self.positions.len() {
-            if self.clearance[i] > thickness + MARGIN || self.resting && self.pinched[i] {
+            if self.clearance[i] > thickness + MARGIN {
+                continue;
+            }
+            if self.resting && self.pinched[i] {
+                self.hold(i, body);
                 continue;
             }
             let (x, reach) = (self.positions[i], thickness + 2.0 * MARGIN);
@@ -54,6 +67,7 @@ impl Solver<'_> {
             self.tracked[i] = Some(hit.face);
             self.pinched[i] = body.is_buried(hit.face, room);
             if self.pinched[i] {
+                self.hold(i, body);
                 continue;
             }
             least = least.min(hit.distance);
@@ -68,6 +82,7 @@ impl Solver<'_> {
             second.iter().for_each(|second| self.remember(i, second));
             if self.resting && (self.met[i] > MOST_MET || self.is_between(i)) {
                 self.pinched[i] = true;
+                self.hold(i, body);
                 continue;
             }
             for (k, touch) in self.touches[i].iter().enumerate() {
@@ -79,10 +94,26 @@ impl Solver<'_> {
         least
     }
 
+    /// Where the body has no room for a vertex, the side that it is worn on alone holds it: an arm in the chest keeps
+    /// its sleeve, which was drawn through it where nothing held it. The plane stays while the body rests, for deep
+    /// inside the nearest place of a side jumps. Neither stiffened nor rubbing: either left more poses out, and so did
+    /// a third of the stiffness. docs/decisions/simulation.md
+    fn hold(&mut self, vertex: usize, body: &PosedBody) {
+        if !self.resting || self.sides[vertex].is_none() {
+            let at = self.positions[vertex];
+            let hit = self.cloth.worn[vertex].and_then(|face| body.closest_on_side(at, face, SIDE));
+            self.sides[vertex] = hit.map(|hit| Touch::new(&hit, at));
+        }
+        if let Some(side) = self.sides[vertex] {
+            let stiffness = self.settings.contact_stiffness * self.cloth.elastic.masses[vertex];
+            self.contacts.push(Contact { stiffness, ..self.contact(vertex, &side, 0.0) });
+        }
+    }
+
     /// Puts a plane in the place of the one on its side, or adds it; forgets those met elsewhere.
     fn remember(&mut self, vertex: usize, hit: &Hit) {
         let at = self.positions[vertex];
-        let new = Touch { normal: hit.normal, plane: hit.normal.dot(at) - hit.distance, at };
+        let new = Touch::new(hit, at);
         let touches = &mut self.touches[vertex];
         match touches.iter_mut().find(|touch| touch.normal.dot(new.normal) > SAME_SIDE) {
             Some(same) => *same = new,

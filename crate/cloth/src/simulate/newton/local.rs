@@ -85,10 +85,12 @@ impl Solver<'_> {
             part.anchors[local] = self.anchors[v];
             part.tracked[local] = self.tracked[v];
             part.stiffness[local] = self.stiffness[v];
-            part.pinched[local] = self.pinched[v] || local >= count;
+            part.pinched[local] = self.pinched[v];
             part.touches[local].clone_from(&self.touches[v]);
             part.met[local] = self.met[v];
-            part.clearance[local] = self.clearance[v];
+            part.sides[local] = self.sides[v];
+            // What is held touches nothing.
+            part.clearance[local] = if local < count { self.clearance[v] } else { f64::INFINITY };
         }
         let local =
             |pin: &Pin| vertices[..count].iter().position(|&v| v == pin.vertex).map(|vertex| Pin { vertex, ..*pin });
@@ -107,6 +109,7 @@ impl Solver<'_> {
             self.pinched[v] = part.pinched[local];
             self.touches[v] = std::mem::take(&mut part.touches[local]);
             self.met[v] = part.met[local];
+            self.sides[v] = part.sides[local];
             self.clearance[v] = part.clearance[local];
         }
     }
