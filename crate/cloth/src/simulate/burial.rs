@@ -1,6 +1,6 @@
 //! Where a skinned body cuts into itself (a lowered arm into the chest) no place is outside all of it. A face is buried
-//! when the point one cloth thickness above it has winding number ≠ 0; cloth whose closest face is buried is held by the
-//! side of the body that it is worn on alone.
+//! when the point one cloth thickness above it has winding number ≠ 0; cloth whose closest face is buried is held by
+//! the side of the body that it is worn on alone.
 
 use ctsn_rig::mesh::triangle::{Meeting, meet};
 use glam::DVec3;

@@ -132,11 +132,6 @@ impl<'a> Solver<'a> {
         self.sides.fill(None);
     }
 
-    /// Whether a vertex is held by one side of the body alone, for want of room.
-    pub fn is_held(&self, vertex: usize) -> bool {
-        self.pinched[vertex] && self.sides[vertex].is_some()
-    }
-
     /// Whether the body has no room for a vertex.
     pub fn has_no_room(&self, vertex: usize) -> bool {
         self.pinched[vertex]

@@ -63,7 +63,7 @@ impl Simulator {
     /// room for. `None` where too many have no way out, or a limb is out: nothing helps them.
     pub(super) fn put_out(&self, solver: &Solver, pose: &Pose, to_body: DAffine3) -> Option<(Vec<DVec3>, Vec<Pin>)> {
         let mut placed: Vec<DVec3> = solver.positions.iter().map(|p| to_body.transform_point3(*p)).collect();
-        let Inside { free, pinched, out, .. } = self.inside(pose, &placed, |vertex| solver.is_held(vertex));
+        let Inside { free, pinched, out, .. } = self.inside(pose, &placed);
         if out.is_some() || free.is_empty() && self.too_pinched(pinched) {
             return None;
         }

@@ -180,14 +180,13 @@ impl Simulator {
         Some(format!("wanted every limb in the cloth, found that at {limb:?} out through it"))
     }
 
-    /// How vertices (body frame, metres) lie wrong to the body in `pose` (world); which of them are `held` by one side
-    /// of it, for want of room.
-    pub(super) fn inside(&self, pose: &Pose, placed: &[DVec3], held: impl Fn(usize) -> bool) -> Inside {
+    /// How vertices (body frame, metres) lie wrong to the body in `pose` (world).
+    pub(super) fn inside(&self, pose: &Pose, placed: &[DVec3]) -> Inside {
         let skin = self.collider.pose(&self.character.skinning(&to_body_frame(&self.character, pose)));
         let signed = self.body.signed(pose, placed);
         let mut inside = Inside { out: self.out(pose, placed), ..Inside::default() };
         for (vertex, distance) in signed.into_iter().enumerate().filter(|(_, distance)| *distance < 0.0) {
-            if held(vertex) || skin.pinches(placed[vertex], PINCH, self.settings.thickness) {
+            if skin.pinches(placed[vertex], PINCH, self.settings.thickness) {
                 inside.pinched += 1;
             } else {
                 inside.free.push(vertex);
@@ -237,8 +236,7 @@ impl Simulator {
             status: Status::Converged,
             positions,
         };
-        let inside = self.inside(pose, &placed, |vertex| solver.is_held(vertex));
-        (outcome, inside)
+        (outcome, self.inside(pose, &placed))
     }
 
     /// Moves vertices (body frame, metres) that the body in `pose` (world) pinches out of it; how many. Between two

@@ -21,8 +21,8 @@ const MEMORY: f64 = 0.001;
 /// Planes whose normals have a larger cosine are one side of the body.
 const SAME_SIDE: f64 = 0.95;
 
-/// Planes a vertex may meet once the body is at rest before there is no room for it: among fingers it jumps from one to the next
-/// for good.
+/// Planes a vertex may meet once the body is at rest before there is no room for it: among fingers it jumps from one to
+/// the next for good.
 const MOST_MET: u32 = 12;
 /// Planes whose normals have a smaller cosine face each other.
 const FACING: f64 = -0.7;

@@ -50,7 +50,7 @@ fn cloth_in_the_body_is_put_outside_and_the_rest_stays() {
     let Standing { simulator, pose, near, .. } = &standing;
     let pushed = &near[..3];
     let start = standing.pushed(pushed, 0.02);
-    let mut inside = simulator.inside(pose, &start, |_| false).free;
+    let mut inside = simulator.inside(pose, &start).free;
     inside.sort_unstable();
     let mut wanted = pushed.to_vec();
     wanted.sort_unstable();
@@ -58,14 +58,14 @@ fn cloth_in_the_body_is_put_outside_and_the_rest_stays() {
 
     let solver = simulator.level.solver(&simulator.settings, start.clone());
     let (positions, _) = simulator.put_out(&solver, pose, DAffine3::IDENTITY).unwrap();
-    assert!(simulator.inside(pose, &positions, |_| false).free.is_empty());
+    assert!(simulator.inside(pose, &positions).free.is_empty());
     for (vertex, (place, before)) in positions.iter().zip(&start).enumerate() {
         assert_eq!(pushed.contains(&vertex), place.distance(*before) > 0.01, "vertex {vertex}");
     }
     // Relaxed from there it is a drape again, none of it inside.
     let outcome = simulator.relax(&simulator.drape().unwrap(), pose, &start);
     assert!(outcome.converged(), "{:?}", outcome.status);
-    assert!(simulator.inside(pose, &outcome.positions, |_| false).free.is_empty());
+    assert!(simulator.inside(pose, &outcome.positions).free.is_empty());
 }
 
 /// A triangle of elsewhere stands beside one of three vertices that are 3 mm inside: lifted, its cloth would cross it.

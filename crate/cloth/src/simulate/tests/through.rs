@@ -193,7 +193,7 @@ fn cloth_between_parts_that_pass_through_each_other_may_be_kept() {
     let outcome = |pinched| {
         let simulator = banded(settings(pinched));
         let mut pose = simulator.character.canonical_pose();
-        pose[1].translation.x -= 0.2;
+        pose[1].translation.x -= 0.12;
         simulator.simulate(&simulator.drape().unwrap(), &pose)
     };
     let [left_out, kept] = [0.0, 0.5].map(outcome);
