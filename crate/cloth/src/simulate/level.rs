@@ -15,6 +15,9 @@ use super::posed::PosedBody;
 use super::settings::Settings;
 use crate::Result;
 
+/// How far from the body a vertex may be that is worn on it, metres.
+const WORN: f64 = 0.12;
+
 /// A garment of `n` vertices.
 pub(super) struct Level {
     pub cloth: Cloth,
@@ -38,13 +41,14 @@ impl Level {
         attached: &[u32],
     ) -> Result<Self> {
         let mut cloth = Cloth::new(mesh, warp, material, settings.shape)?;
-        cloth.worn = worn(collider, &mesh.positions);
+        let body = PosedBody::new(collider, collider.body.mesh.positions.clone());
+        cloth.worn = worn(&body, &mesh.positions);
         // Fewer springs that hold as much in all.
         let attachment = settings.attachment * (settings.attached.len() as f64 / attached.len().max(1) as f64);
         Ok(Self {
             layout: Arc::new(Layout::new(&cloth, &[])?),
             rings: mesh.rings(),
-            attached: attach(collider, &mesh.positions, attached),
+            attached: attach(&body, &mesh.positions, attached),
             attachment,
             cloth,
         })
@@ -65,21 +69,16 @@ impl Level {
     }
 }
 
-/// How far from the body a vertex may be that is worn on it, metres.
-const WORN: f64 = 0.12;
-
-/// The face of the body that each vertex is worn on, if it is near one.
-fn worn(collider: &Collider, rest: &[DVec3]) -> Vec<Option<u32>> {
-    let body = PosedBody::new(collider, collider.body.mesh.positions.clone());
+/// The face of the canonical body that each vertex is worn on, if it is near one.
+fn worn(body: &PosedBody, rest: &[DVec3]) -> Vec<Option<u32>> {
     rest.iter().map(|x| Some(body.closest(*x, None, WORN)?.face)).collect()
 }
 
-/// Attached vertices with the skin of the body point closest to them.
-fn attach(collider: &Collider, rest: &[DVec3], attached: &[u32]) -> Vec<(usize, SkinWeights)> {
-    let body = PosedBody::new(collider, collider.body.mesh.positions.clone());
+/// Attached vertices with the skin of the canonical body's point closest to them.
+fn attach(body: &PosedBody, rest: &[DVec3], attached: &[u32]) -> Vec<(usize, SkinWeights)> {
     let skin = |&vertex: &u32| {
         let hit = body.closest(rest[vertex as usize], None, f64::MAX.sqrt())?;
-        Some((vertex as usize, collider.skin(hit.face, hit.barycentric)))
+        Some((vertex as usize, body.collider.skin(hit.face, hit.barycentric)))
     };
     attached.iter().filter_map(skin).collect()
 }

@@ -85,10 +85,10 @@ pub(super) struct Solver<'a> {
     stiffness: Vec<f64>,
     /// Vertices that the body has no room for [n]: only the side they are worn on holds them.
     pinched: Vec<bool>,
-    /// Planes of the body each vertex has met where it is [n].
-    touches: Vec<Vec<Touch>>,
     /// The plane that holds each of them [n].
     sides: Vec<Option<Touch>>,
+    /// Planes of the body each vertex has met where it is [n].
+    touches: Vec<Vec<Touch>>,
     /// How many planes each has met since the body came to rest [n].
     met: Vec<u32>,
     /// Lower bound of the distance to the body [n].
@@ -117,9 +117,9 @@ impl<'a> Solver<'a> {
             gradient: vec![DVec3::ZERO; n],
             stiffness: vec![settings.contact_stiffness; n],
             pinched: vec![false; n],
+            sides: vec![None; n],
             touches: vec![Vec::new(); n],
             met: vec![0; n],
-            sides: vec![None; n],
             clearance: vec![0.0; n],
         }
     }

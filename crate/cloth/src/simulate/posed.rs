@@ -33,7 +33,7 @@ enum Faces {
     Across(DVec3),
     /// Those of the part this face belongs to.
     Around(u32),
-    /// Those of the side this face belongs to.
+    /// Those of the side the tracked face belongs to.
     Side,
 }
 
