@@ -24,8 +24,8 @@ pub const LEAST: Posture = Posture {
     arms: [[20.0, -24.0, -14.0, 6.0, -12.0]; 2],
     feet: [[0.01, 0.0, -0.3, 2.0, 0.0]; 2],
 };
-/// The upper limits. Arms that reach across the breast brought a dance that holds them there no nearer, and three times
-/// as many poses were left out: docs/decisions/poses.md.
+/// The upper limits. Arms that reach across the breast brought a dance that holds them there no nearer:
+/// docs/decisions/poses.md.
 pub const MOST: Posture = Posture {
     heading: 20.0,
     hips: [0.06, -0.02, 0.05],
