@@ -29,7 +29,7 @@ pub const LEAST: Posture = Posture {
     feet: [[0.01, 0.0, -0.4, 2.0, 0.0]; 2],
 };
 /// The upper limits. Arms that reach across the breast brought a dance that holds them there no nearer, and feet lifted
-/// so that a knee comes to the breast brought frames with one there nearer and others as far off:
+/// so that a knee comes to the breast brought frames with one there nearer and others further off:
 /// docs/decisions/poses.md.
 pub const MOST: Posture = Posture {
     heading: 20.0,
