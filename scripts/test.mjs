@@ -1,6 +1,8 @@
 // npm test: every suite; a suite that cannot run has failed. Ends with the sum of all.
 //   npm test -- Node    those whose names begin so
-import { existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import path from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { armCompiler, armEmulator, chromedriver, chromium, firefox, vulkan, webkitDriver, xvfb } from './browser.mjs';
 import { tested } from './environments.mjs';
@@ -174,8 +176,16 @@ async function runAll() {
   return [...both.flat(), ...(await runSuites(last))];
 }
 
+/** Browsers that a test ends leave profiles among the temporary files: these are this run's own, and go with it. */
+function ownTemporaries() {
+  const folder = mkdtempSync(path.join(tmpdir(), 'ctsn-'));
+  process.env.TMPDIR = folder;
+  process.on('exit', () => rmSync(folder, { recursive: true, force: true, maxRetries: 9 }));
+}
+
 await main(async () => {
   for (const find of [chromium, chromedriver, firefox, webkitDriver, xvfb, armCompiler, armEmulator]) find();
+  ownTemporaries();
   await ensureRust();
   mkdirSync(at('out'), { recursive: true });
   const beginning = process.argv[2] ?? '';
